@@ -1,0 +1,16 @@
+#include "core/time_table.hpp"
+
+#include <algorithm>
+
+namespace talus {
+
+double TimeTable::operator()(double t) const {
+    if (time.empty()) return 0.0;
+    if (t <= time.front()) return value.front();
+    if (t >= time.back()) return value.back();
+    const auto i = std::upper_bound(time.begin(), time.end(), t) - time.begin();
+    const double w = (t - time[i - 1]) / (time[i] - time[i - 1]);
+    return value[i - 1] + w * (value[i] - value[i - 1]);
+}
+
+}  // namespace talus

@@ -1,0 +1,17 @@
+// A number that depends on time: constant, or linear between given points and constant outside them.
+#pragma once
+
+#include <vector>
+
+namespace talus {
+
+struct TimeTable {
+    std::vector<double> time;   // [n] s, increasing; empty = constant zero
+    std::vector<double> value;  // [n]
+
+    static TimeTable constant(double v) { return {{0.0}, {v}}; }
+    double operator()(double t) const;
+    bool is_constant() const { return time.size() < 2; }
+};
+
+}  // namespace talus

@@ -1,0 +1,66 @@
+// Cutting a domain into blocks, exactly. The implementation is the only file that sees CGAL.
+#pragma once
+
+#include "core/types.hpp"
+
+#include <string>
+#include <vector>
+
+namespace talus {
+
+struct CutLine {           // segment of a joint, crack or trace
+    Vec2 from, to;
+    int source;            // index of what it belongs to (joint set, crack, trace map); -1 = none
+};
+
+struct CutRegion {
+    Polygon outline;
+    int id;
+};
+
+struct CutInput {
+    Polygon outline;                   // simple, counter-clockwise
+    std::vector<Polygon> holes;        // cut and left empty
+    std::vector<CutRegion> regions;    // cut along their outlines; blocks inside carry the id (the last one that contains them)
+    std::vector<CutLine> lines;
+    double sliver_area = 0.0;          // m2; blocks below this area or width are merged with the neighbour of the longest
+    double sliver_width = 0.0;         // m, 2 area / perimeter                                     common edge; 0 = keep all
+};
+
+struct CutBlock {
+    Polygon outline;                   // counter-clockwise, no collinear corners except where a neighbour's corner forbids none
+    std::vector<Polygon> holes;        // clockwise; a block around an island
+    std::vector<Polygon> parts;        // convex, counter-clockwise; one equal to outline if the block is convex
+    double area;                       // m2
+    int region;                        // id, -1 = none
+};
+
+struct CutSeam {                       // where two blocks touch along a source; for finding the joint of a face
+    Vec2 from, to;
+    int source;
+};
+
+struct CutReport {                     // counts for the user
+    int dangling = 0;                  // ends of lines that stop inside a block and cut nothing (pruned)
+    int merged = 0;                    // slivers merged
+    double merged_area = 0.0;          // m2
+    std::vector<Vec2> merged_at;       // m, where they were
+    int dropped = 0;                   // slivers without a neighbour
+    int concave = 0, islands = 0;
+    double outline_area = 0.0;         // m2, of the outline less the holes, exact
+    double blocks_area = 0.0;          // m2, sum over the blocks
+};
+
+struct CutResult {
+    std::vector<CutBlock> blocks;      // numbered along a space-filling curve, so that neighbours are near in memory
+    std::vector<CutSeam> seams;        // every piece of a source that separates two blocks
+    CutReport report;
+};
+
+/// Cuts the outline along all lines at once (exact arithmetic; coordinates are rounded to double once, at the end).
+CutResult cut(const CutInput& input);
+
+/// Convex parts of a simple polygon with holes; {outline} itself if it is convex.
+std::vector<Polygon> convex_parts(const Polygon& outline, const std::vector<Polygon>& holes = {});
+
+}  // namespace talus

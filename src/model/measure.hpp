@@ -1,0 +1,36 @@
+// Numbers read off a state: energies, unbalanced ratio, largest movers. Nothing here changes anything.
+#pragma once
+
+#include "model/model.hpp"
+#include "model/state.hpp"
+
+namespace talus {
+
+/// J per m of thickness. Stored energies at this instant, dissipated and external work since the last reset.
+struct Energies {
+    double kinetic = 0.0;
+    double strain_normal = 0.0, strain_shear = 0.0;      // stored in the joints
+    double friction = 0.0, contact_damping = 0.0, local_damping = 0.0, released = 0.0;  // dissipated, >= 0
+    double gravity = 0.0, loads = 0.0, driven = 0.0;      // work done on the blocks
+    /// kinetic + stored + dissipated - external work: constant up to the oscillation of the integrator, (omega dt)^2.
+    double total() const {
+        return kinetic + strain_normal + strain_shear + friction + contact_damping + local_damping + released - gravity -
+               loads - driven;
+    }
+};
+
+double kinetic_energy(const Model& model, const State& state);
+
+/// max |out-of-balance force| over free blocks / mean over blocks of the sum of contact force magnitudes (or of the weights,
+/// whichever is larger); torques count divided by the radius of gyration. Dimensionless; 0 in equilibrium.
+double unbalanced_ratio(const Model& model, const State& state);
+
+/// Displacement since the start (or the last reset) of the point of block b that was at `start_point` (m) then.
+Vec2 displacement(const Model& model, const State& state, BlockId b, const Vec2& start_point);
+
+double max_speed(const Model& model, const State& state);  // m/s, of any corner (bound: |v| + |spin| radius)
+
+/// Block that contains the point now, -1 if none; the first one if several do (touching edges).
+BlockId block_at(const Model& model, const State& state, const Vec2& point);
+
+}  // namespace talus

@@ -1,0 +1,29 @@
+#include "core/random.hpp"
+#include "core/time_table.hpp"
+#include "support/catch.hpp"
+
+#include <cmath>
+
+using namespace talus;
+
+TEST_CASE("a time table is linear between its points and constant outside them") {
+    const TimeTable ramp{{1.0, 3.0}, {0.0, 4.0}};
+    CHECK(ramp(0.0) == 0.0);
+    CHECK(ramp(2.0) == 2.0);
+    CHECK(ramp(9.0) == 4.0);
+    CHECK(TimeTable{}(5.0) == 0.0);
+    CHECK(TimeTable::constant(7.0)(-1.0) == 7.0);
+}
+
+TEST_CASE("normal numbers have mean zero and deviation one") {
+    Random random(42);
+    double sum = 0.0, squares = 0.0;
+    const int n = 100000;
+    for (int i = 0; i < n; ++i) {
+        const double x = random.normal();
+        sum += x;
+        squares += x * x;
+    }
+    CHECK(std::abs(sum / n) < 0.02);
+    CHECK(squares / n == Approx(1.0).epsilon(0.02));
+}
