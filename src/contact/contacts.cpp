@@ -40,7 +40,7 @@ public:
 
     void operator()(int i, Work& work) {
         Contact& c = state_.contacts.list[i];
-        const Shape a(model_, placed_, c.part_a), b(model_, placed_, c.part_b);
+        const PlacedPart a(model_, placed_, c.part_a), b(model_, placed_, c.part_b);
         const BlockId block_a = model_.parts.block[c.part_a], block_b = model_.parts.block[c.part_b];
         const Vec2& pa = state_.motion.position[block_a];
         const Vec2& pb = state_.motion.position[block_b];
@@ -63,7 +63,7 @@ public:
 
 private:
     // True if the pair carries a normal force (or an intact bond); sets the edges of the contact.
-    bool find_normal(Contact& c, const Shape& a, const Shape& b, double dx, double dy, Normal& out) {
+    bool find_normal(Contact& c, const PlacedPart& a, const PlacedPart& b, double dx, double dy, Normal& out) {
         if (c.dilation == 0.0) return find_overlap(c, a, b, dx, dy, out);
         // Slip has thickened the joint: the same as moving b against a. The force acts at the true place, so that torques
         // still balance.
@@ -73,7 +73,7 @@ private:
         return true;
     }
 
-    bool find_overlap(Contact& c, const Shape& a, const Shape& b, double dx, double dy, Normal& out) {
+    bool find_overlap(Contact& c, const PlacedPart& a, const PlacedPart& b, double dx, double dy, Normal& out) {
         const int old_a = c.alive ? c.edge_a : -1, old_b = c.alive ? c.edge_b : -1;
         if (c.face >= 0 || (model_.face_path && old_a >= 0 && old_b >= 0)) {
             switch (try_face(c, a, b, dx, dy, old_a - a.first, old_b - b.first, out)) {
@@ -112,12 +112,12 @@ private:
         return true;
     }
 
-    static bool distinct(const Shape& s, int k) {
+    static bool distinct(const PlacedPart& s, int k) {
         const Vec2 &n = s.normal[k], &p = s.normal[s.previous(k)], &q = s.normal[s.next(k)];
         return n.x() * p.x() + n.y() * p.y() < smooth_cos && n.x() * q.x() + n.y() * q.y() < smooth_cos;
     }
 
-    FaceState try_face(Contact& c, const Shape& a, const Shape& b, double dx, double dy, int ea, int eb, Normal& out) {
+    FaceState try_face(Contact& c, const PlacedPart& a, const PlacedPart& b, double dx, double dy, int ea, int eb, Normal& out) {
         FaceMemory memory;
         const bool remembers = c.face >= 0;
         if (remembers) {
@@ -222,7 +222,7 @@ private:
         work.damping -= (normal_dashpot * vn + shear.dashpot * vt + moment_dashpot * (wb - wa)) * dt_;
     }
 
-    void unload(int i, Contact& c, const Shape& a, const Shape& b, double dx, double dy, Work& work) {
+    void unload(int i, Contact& c, const PlacedPart& a, const PlacedPart& b, double dx, double dy, Work& work) {
         if (!c.alive) return;
         if (c.shear_force != 0.0)
             work.released += c.shear_force * c.shear_force / (2.0 * model_.joints[c.joint].ks * c.length);
@@ -360,7 +360,7 @@ StrainEnergy strain_energy(const Model& model, const Placed& placed, const State
         if (!c.touching) continue;
         const Joint& joint = model.joints[c.joint];
         if (c.shear_force != 0.0) energy.shear += c.shear_force * c.shear_force / (2.0 * joint.ks * c.length);
-        const Shape a(model, placed, c.part_a), b(model, placed, c.part_b);
+        const PlacedPart a(model, placed, c.part_a), b(model, placed, c.part_b);
         Vec2 d = state.motion.position[model.parts.block[c.part_b]] - state.motion.position[model.parts.block[c.part_a]];
         d -= c.dilation * c.normal;
         if (c.edge_a < 0 || c.edge_b < 0) {

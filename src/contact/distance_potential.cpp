@@ -12,7 +12,7 @@ struct Line {  // depth below edge k of P along an edge of Q: D + s t, t in [0, 
 
 // Adds -sign/2 x Int d_P ds x normal over all edges of Q inside P. Q is shifted by (qx, qy), P by (px, py), both from the
 // centroid of a; sign is +1 where Q is block b (force on b) and -1 where Q is block a (the reaction falls on b).
-void integrate(const Shape& q, double qx, double qy, const Shape& p, double px, double py, double sign, double dx, double dy,
+void integrate(const PlacedPart& q, double qx, double qy, const PlacedPart& p, double px, double py, double sign, double dx, double dy,
                Patch& patch, double& weight) {
     static thread_local std::vector<Line> lines;
     lines.resize(p.n);
@@ -106,7 +106,7 @@ double depth_integral(const Polygon& polygon, double nx, double ny, double offse
 }
 
 // Int over the region of d_P: the cell of edge k is where k is nearest
-double potential(const Polygon& region, const Shape& p, double px, double py) {
+double potential(const Polygon& region, const PlacedPart& p, double px, double py) {
     double sum = 0.0;
     for (int k = 0; k < p.n; ++k) {
         if (p.internal[k]) continue;
@@ -125,7 +125,7 @@ double potential(const Polygon& region, const Shape& p, double px, double py) {
 
 }  // namespace
 
-Patch distance_potential(const Shape& a, const Shape& b, double dx, double dy) {
+Patch distance_potential(const PlacedPart& a, const PlacedPart& b, double dx, double dy) {
     Patch patch;
     double weight = 0.0;
     integrate(b, dx, dy, a, 0.0, 0.0, 1.0, dx, dy, patch, weight);
@@ -139,7 +139,7 @@ Patch distance_potential(const Shape& a, const Shape& b, double dx, double dy) {
     return patch;
 }
 
-double distance_potential_energy(const Shape& a, const Shape& b, double dx, double dy) {
+double distance_potential_energy(const PlacedPart& a, const PlacedPart& b, double dx, double dy) {
     Polygon region(b.arm, b.arm + b.n);
     for (Vec2& corner : region) corner += Vec2(dx, dy);
     for (int k = 0; k < a.n && region.size() > 2; ++k) region = clip(region, a.normal[k].x(), a.normal[k].y(), a.offset[k]);

@@ -1,7 +1,7 @@
 // The general contact geometry: distance potential of two convex polygons.
 #pragma once
 
-#include "contact/shape.hpp"
+#include "contact/placed_part.hpp"
 
 namespace talus {
 
@@ -13,9 +13,9 @@ namespace talus {
 /// A true potential without corner cases; a face with overlap u gets kn u per metre and its exact moment. Edges between two
 /// parts of one block bound the region of integration but are no boundary of the block.
 /// The form is Munjiza's (2004) with the distance potential of Liu et al. (2017).
-Patch distance_potential(const Shape& a, const Shape& b, double dx, double dy);
+Patch distance_potential(const PlacedPart& a, const PlacedPart& b, double dx, double dy);
 
 /// E / kn of the same, m3. For the energy report only: exact, and slower.
-double distance_potential_energy(const Shape& a, const Shape& b, double dx, double dy);
+double distance_potential_energy(const PlacedPart& a, const PlacedPart& b, double dx, double dy);
 
 }  // namespace talus

@@ -19,7 +19,7 @@ struct Window {
     double gap_lo, gap_hi;  // m, distance between the two corners nearest to each end; > 0 if it is a's corner that lies
 };                          //    inside the face of b, < 0 if b's lies inside the face of a
 
-bool make_window(const Shape& a, const Shape& b, double dx, double dy, int ea, int eb, bool any_depth, Window& w) {
+bool make_window(const PlacedPart& a, const PlacedPart& b, double dx, double dy, int ea, int eb, bool any_depth, Window& w) {
     const Vec2& na = a.normal[ea];
     const Vec2& nb = b.normal[eb];
     const double cosine = -(na.x() * nb.x() + na.y() * nb.y());
@@ -132,7 +132,7 @@ double end_thrust(double u, double initial, bool bonded, double corner_gap) {
 
 }  // namespace
 
-FacePatch face_contact(const Shape& a, const Shape& b, double dx, double dy, int ea, int eb, const FaceMemory* memory) {
+FacePatch face_contact(const PlacedPart& a, const PlacedPart& b, double dx, double dy, int ea, int eb, const FaceMemory* memory) {
     FacePatch patch;
     Window w;
     if (!make_window(a, b, dx, dy, ea, eb, memory != nullptr, w)) return patch;
@@ -179,7 +179,7 @@ FacePatch face_contact(const Shape& a, const Shape& b, double dx, double dy, int
     return patch;
 }
 
-double face_energy(const Shape& a, const Shape& b, double dx, double dy, int ea, int eb, const FaceMemory* memory) {
+double face_energy(const PlacedPart& a, const PlacedPart& b, double dx, double dy, int ea, int eb, const FaceMemory* memory) {
     Window w;
     if (!make_window(a, b, dx, dy, ea, eb, memory != nullptr, w)) return 0.0;
     double energy = 0.0;
@@ -194,7 +194,7 @@ double face_energy(const Shape& a, const Shape& b, double dx, double dy, int ea,
     return energy;
 }
 
-int break_cells(const Shape& a, const Shape& b, double dx, double dy, int ea, int eb, const FaceMemory& memory,
+int break_cells(const PlacedPart& a, const PlacedPart& b, double dx, double dy, int ea, int eb, const FaceMemory& memory,
                 double strength, std::uint8_t* broken) {
     Window w;
     if (!make_window(a, b, dx, dy, ea, eb, true, w)) return 0;

@@ -1,7 +1,7 @@
 // The closed form for two faces that lie on each other: most contacts of a rock mass, at a fraction of the general cost.
 #pragma once
 
-#include "contact/shape.hpp"
+#include "contact/placed_part.hpp"
 
 #include <cstdint>
 #include <optional>
@@ -34,13 +34,13 @@ struct FacePatch : Patch {
 /// bisector of the two faces plus, at each end of the window, the thrust (kn/4) u^2 of the side edge whose corner lies
 /// there: without it a block tilted by theta would feel a false tangential force N theta / 2. Differs from the general
 /// distance potential by O(u / length) in stiffness, and by higher order in direction.
-FacePatch face_contact(const Shape& a, const Shape& b, double dx, double dy, int ea, int eb, const FaceMemory* memory);
+FacePatch face_contact(const PlacedPart& a, const PlacedPart& b, double dx, double dy, int ea, int eb, const FaceMemory* memory);
 
 /// E / kn of a loaded face, m3.
-double face_energy(const Shape& a, const Shape& b, double dx, double dy, int ea, int eb, const FaceMemory* memory);
+double face_energy(const PlacedPart& a, const PlacedPart& b, double dx, double dy, int ea, int eb, const FaceMemory* memory);
 
 /// Breaks the bond cells whose tension at one end exceeds kn x `strength` (m); returns how many broke.
-int break_cells(const Shape& a, const Shape& b, double dx, double dy, int ea, int eb, const FaceMemory& memory,
+int break_cells(const PlacedPart& a, const PlacedPart& b, double dx, double dy, int ea, int eb, const FaceMemory& memory,
                 double strength, std::uint8_t* broken);
 
 }  // namespace talus

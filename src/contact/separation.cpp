@@ -2,7 +2,7 @@
 
 namespace talus {
 
-Separation separation(const Shape& a, const Shape& b, double dx, double dy) {
+Separation separation(const PlacedPart& a, const PlacedPart& b, double dx, double dy) {
     Separation best;
     for (int k = 0; k < a.n; ++k) {
         const double distance = separation_by_edge(a, k, b, dx, dy);
@@ -15,7 +15,7 @@ Separation separation(const Shape& a, const Shape& b, double dx, double dy) {
     return best;
 }
 
-int facing_edge(const Shape& other, double nx, double ny) {
+int facing_edge(const PlacedPart& other, double nx, double ny) {
     int best = 0;
     double least = 2.0;
     for (int k = 0; k < other.n; ++k) {

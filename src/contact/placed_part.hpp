@@ -6,7 +6,7 @@
 
 namespace talus {
 
-struct Shape {
+struct PlacedPart {
     const Vec2* arm;               // [n] m
     const Vec2* normal;            // [n]
     const double* offset;          // [n] m
@@ -15,7 +15,7 @@ struct Shape {
     int n;
     int first;  // global index of corner 0
 
-    Shape(const Model& model, const Placed& placed, PartId part)
+    PlacedPart(const Model& model, const Placed& placed, PartId part)
         : arm(&placed.arm[model.parts.first_corner[part]]),
           normal(&placed.normal[model.parts.first_corner[part]]),
           offset(&model.corners.offset[model.parts.first_corner[part]]),
