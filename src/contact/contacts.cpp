@@ -171,15 +171,9 @@ private:
         const Patch& p = normal.patch;
         const double nx = normal.nx, ny = normal.ny, tx = -ny, ty = nx;
         const double rax = p.x, ray = p.y, rbx = p.x - dx, rby = p.y - dy;
-        const double wa = motion.spin[block_a], wb = motion.spin[block_b];
-        const Vec2 &va = motion.velocity[block_a], &vb = motion.velocity[block_b];
-
-        // Relative velocity of the two material points over the step that has just ended; the last terms take the arms back
-        // to its middle, or two blocks that turn together would seem to slip (by spin^2 dt/2 x distance).
-        const double back_a = 0.5 * dt_ * wa * wa, back_b = 0.5 * dt_ * wb * wb;
-        const double vx = vb.x() - wb * rby + back_b * rbx - (va.x() - wa * ray + back_a * rax);
-        const double vy = vb.y() + wb * rbx + back_b * rby - (va.y() + wa * rax + back_a * ray);
-        const double vn = vx * nx + vy * ny, vt = vx * tx + vy * ty;
+        const double turning = motion.spin[block_b] - motion.spin[block_a];
+        const Vec2 v = relative_velocity(block_a, block_b, {rax, ray}, {rbx, rby});
+        const double vn = v.x() * nx + v.y() * ny, vt = v.x() * tx + v.y() * ty;
 
         // A contact that has moved to other edges keeps the part of its shear force that lies in the new plane.
         if (c.touching && c.shear_force != 0.0) {
@@ -191,7 +185,7 @@ private:
         double normal_dashpot = -dashpot * joint.kn * p.length * vn;
         double elastic = joint.kn * normal.kn_force;
         if (p.bonded_length == 0.0) normal_dashpot = std::max(normal_dashpot, -elastic);  // a plain contact cannot pull
-        const double moment_dashpot = -dashpot * joint.kn * normal.rotation_stiffness * (wb - wa);
+        const double moment_dashpot = -dashpot * joint.kn * normal.rotation_stiffness * turning;
 
         const double face_length = c.face >= 0 ? model_.faces[c.face].s1 - model_.faces[c.face].s0 : 0.0;
         const ShearStep step{elastic + normal_dashpot,           p.length, p.bonded_length, face_length, vt * dt_,
@@ -219,13 +213,18 @@ private:
 
         work.friction += shear.friction;
         work.released += shear.released;
-        work.damping -= (normal_dashpot * vn + shear.dashpot * vt + moment_dashpot * (wb - wa)) * dt_;
+        work.damping -= (normal_dashpot * vn + shear.dashpot * vt + moment_dashpot * turning) * dt_;
     }
 
     void unload(int i, Contact& c, const PlacedPart& a, const PlacedPart& b, double dx, double dy, Work& work) {
         if (!c.alive) return;
-        if (c.shear_force != 0.0)
+        if (c.shear_force != 0.0) {
+            const BlockId block_a = model_.parts.block[c.part_a], block_b = model_.parts.block[c.part_b];
+            const Vec2 v = relative_velocity(block_a, block_b, c.point - state_.motion.position[block_a],
+                                             c.point - state_.motion.position[block_b]);
             work.released += c.shear_force * c.shear_force / (2.0 * model_.joints[c.joint].ks * c.length);
+            work.friction -= 0.5 * c.shear_force * v.dot(perp(c.normal)) * dt_;
+        }
         c.touching = 0;
         c.sliding = 0;
         c.length = c.normal_force = c.shear_force = c.strength = 0.0;
@@ -239,6 +238,15 @@ private:
             c = Contact{part_a, part_b, model_.joint_between(part_a, part_b)};
             c.edge_a = apart.distance >= 0.0 ? apart.edge + (apart.of_a ? a.first : b.first) : -1;
         }
+    }
+
+    // Of b against a, over the step that has just ended, m/s; arms from the centroids. The last terms take the arms back to
+    // the middle of the step, or two blocks that turn together would seem to slip (by spin^2 dt/2 x distance).
+    Vec2 relative_velocity(BlockId a, BlockId b, const Vec2& arm_a, const Vec2& arm_b) const {
+        const Motion& m = state_.motion;
+        const double wa = m.spin[a], wb = m.spin[b];
+        return m.velocity[b] + wb * perp(arm_b) + (0.5 * dt_ * wb * wb) * arm_b -
+               (m.velocity[a] + wa * perp(arm_a) + (0.5 * dt_ * wa * wa) * arm_a);
     }
 
     void break_bonds(const Contact& c) {

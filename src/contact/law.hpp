@@ -39,6 +39,8 @@ struct MohrCoulomb {
             if (step.length < c.length) before *= step.length / c.length;
             result.released = stored - before * before / (2.0 * stiffness);
         }
+        // The part of the force that is lost worked through half of this step before it went (mean of both its ends).
+        result.friction = -0.5 * (c.shear_force - before) * step.displacement;
         const double trial = before - stiffness * step.displacement;
         double strength = this->strength(joint, step, c.slipped);
         double force = trial;
@@ -56,7 +58,7 @@ struct MohrCoulomb {
             const double slip = (std::abs(trial) - strength) / stiffness;
             c.slip += slip;
             c.slip_sum -= sign * slip;
-            result.friction = 0.5 * (before + force) * sign * slip;
+            result.friction += 0.5 * (before + force) * sign * slip;
             const double dilation = joint.tan_dilation * std::min(std::abs(c.slip_sum), joint.dilation_cutoff_slip);
             result.friction -= step.normal_force * (dilation - c.dilation);  // what lifts the block is not lost
             c.dilation = dilation;

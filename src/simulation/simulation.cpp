@@ -3,6 +3,10 @@
 #include "core/errors.hpp"
 #include "dynamics/motion.hpp"
 
+#ifdef _OPENMP
+#include <omp.h>
+#endif
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -51,6 +55,9 @@ Simulation::Simulation(const Scenario& scenario, Scene scene)
       driven_(std::exchange(model_.driven, {})),
       search_(make_search(scenario.run.search)),
       skin_(scenario.run.skin.value_or(default_skin(model_))) {
+#ifdef _OPENMP
+    omp_set_num_threads(scenario.run.threads);
+#endif
     boundary_loads_.assign(model_.loads.begin(), model_.loads.begin() + model_.boundary_loads);
     model_.face_path = scenario.run.face_path;
 }
