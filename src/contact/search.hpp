@@ -10,12 +10,15 @@
 
 namespace talus {
 
+/// Whether a box takes part: xmin > xmax marks an absent one, and a box whose numbers are not numbers counts as absent.
+inline bool present(const Box& box) { return box.xmin <= box.xmax && box.ymin <= box.ymax; }
+
 class PairSearch {
 public:
     virtual ~PairSearch() = default;
 
     /// All pairs a < b whose closed boxes overlap (touching counts), sorted, each once. Depends on `boxes` alone:
-    /// what a search remembers may make it faster, never different. A box with xmin > xmax is absent and overlaps nothing;
+    /// what a search remembers may make it faster, never different. A box that is not present overlaps nothing;
     /// the number of boxes may change between calls.
     virtual void find(std::span<const Box> boxes, std::vector<Pair>& pairs) = 0;
 };
