@@ -2,12 +2,11 @@
 
 namespace talus {
 
-/// Version of the program, and of the two file layouts it writes.
-inline constexpr const char* version = TALUS_VERSION;
+extern const char* const version;   // of the program, e.g. "0.1.0"
+extern const char* const compiler;  // as given by the build, e.g. "GNU 12.2.0 Release"
+
+/// Versions of the two file layouts the program writes.
 inline constexpr int results_schema = 1;
 inline constexpr int restart_schema = 1;
-
-/// "g++ 12.2.0 -O3 ..." as given by the build.
-inline constexpr const char* compiler = TALUS_COMPILER;
 
 }  // namespace talus
