@@ -1,6 +1,7 @@
 #include "core/time_table.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 namespace talus {
 
@@ -11,6 +12,13 @@ double TimeTable::operator()(double t) const {
     const auto i = std::upper_bound(time.begin(), time.end(), t) - time.begin();
     const double w = (t - time[i - 1]) / (time[i] - time[i - 1]);
     return value[i - 1] + w * (value[i] - value[i - 1]);
+}
+
+TimeTable operator+(const TimeTable& a, const TimeTable& b) {
+    TimeTable sum;
+    std::set_union(a.time.begin(), a.time.end(), b.time.begin(), b.time.end(), std::back_inserter(sum.time));
+    for (const double t : sum.time) sum.value.push_back(a(t) + b(t));
+    return sum;
 }
 
 }  // namespace talus

@@ -14,4 +14,7 @@ struct TimeTable {
     bool is_constant() const { return time.size() < 2; }
 };
 
+/// Sum of two tables at every time.
+TimeTable operator+(const TimeTable& a, const TimeTable& b);
+
 }  // namespace talus

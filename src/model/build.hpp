@@ -30,6 +30,10 @@ Scene build(const Scenario& scenario);
 /// Blocks meant by a selector, ascending; throws InputError if there is none.
 std::vector<BlockId> select(const Model& model, const State& state, const Selector& selector);
 
+/// Loads on the selected blocks, each block with the whole force; throws InputError if a selector fits nothing. They go
+/// behind the first Model::boundary_loads of Model::loads.
+std::vector<Load> make_loads(const Model& model, const State& state, const std::vector<LoadSpec>& specs);
+
 /// Joint properties ready for the law.
 Joint make_joint(const JointSpec& spec);
 
