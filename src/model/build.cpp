@@ -1,5 +1,6 @@
 #include "model/build.hpp"
 
+#include "core/text.hpp"
 #include "model/initial_stress.hpp"
 #include "model/joints.hpp"
 #include "model/neighbours.hpp"
@@ -11,7 +12,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace talus {
 namespace {
@@ -19,12 +19,6 @@ namespace {
 // Edges closer than this share of the size of the scene coincide; deeper overlaps are faults.
 constexpr double relative_tolerance = 1e-9;
 constexpr std::size_t most_overlaps_told = 50;  // more of them have one cause and hide the other faults
-
-std::string number(double x) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.6g", x);
-    return text;
-}
 
 class Builder {
 public:
@@ -76,8 +70,7 @@ int Builder::material(const std::string& name, const Where& at, const std::strin
 
 std::string Builder::title(BlockId b) const {
     if (!model_.blocks.name[b].empty()) return "block `" + model_.blocks.name[b] + "`";
-    const Vec2 at = model_.blocks.start[b] + model_.origin;
-    return "the block of rock at (" + number(at.x()) + ", " + number(at.y()) + ")";
+    return "the block of rock at " + place(model_.blocks.start[b] + model_.origin);
 }
 
 const Where& Builder::where(BlockId b) const {
@@ -148,10 +141,9 @@ void Builder::find_touching_parts() {
 
 void Builder::tell_overlaps(std::span<const Neighbours::Overlap> overlaps) {
     for (const auto& overlap : overlaps.first(std::min(overlaps.size(), most_overlaps_told))) {
-        const Vec2 at = overlap.at + model_.origin;
         fault(where(overlap.b), "blocks",
-              title(overlap.b) + " overlaps " + title(overlap.a) + " by " + number(overlap.depth) + " m at (" +
-                  number(at.x()) + ", " + number(at.y()) + ")");
+              title(overlap.b) + " overlaps " + title(overlap.a) + " by " + number(overlap.depth) + " m at " +
+                  place(overlap.at + model_.origin));
     }
     if (overlaps.size() > most_overlaps_told)
         fault({scenario_.file, 0}, "blocks",

@@ -75,34 +75,36 @@ int Model::joint_between(PartId a, PartId b) const {
 }
 
 void fill_joint_tables(const Scenario& scenario, Model& model, std::vector<Fault>& faults) {
-    for (const JointSpec& spec : scenario.joints) model.joints.push_back(make_joint(spec));
+    const auto fault = [&](const std::string& key, const std::string& message) {
+        faults.push_back(Fault{Where{scenario.file, 0}, key, message});
+    };
     const auto joint = [&](const std::string& name, const std::string& key) {
         const int found = joint_index(model, name);
-        if (found < 0) faults.push_back({{scenario.file, 0}, key, "there is no joint named `" + name + "`"});
+        if (found < 0) fault(key, "there is no joint named `" + name + "`");
         return std::max(found, 0);
     };
-    if (!scenario.contacts.default_joint.empty()) model.default_joint = joint(scenario.contacts.default_joint, "contacts.default");
+    for (const JointSpec& spec : scenario.joints) model.joints.push_back(make_joint(spec));
+    const ContactSpec& contacts = scenario.contacts;
+    if (!contacts.default_joint.empty()) model.default_joint = joint(contacts.default_joint, "contacts.default");
 
     const std::size_t nm = model.material_names.size();
     model.joint_of_materials.assign(nm * nm, model.default_joint);
-    for (const auto& row : scenario.contacts.materials) {
+    for (const auto& row : contacts.materials) {
         const int a = index_of(model.material_names, row.a), b = index_of(model.material_names, row.b);
         const int j = joint(row.joint, "contacts.materials");
-        for (const auto& [name, found] : {std::pair(row.a, a), std::pair(row.b, b)})
-            if (found < 0) faults.push_back({{scenario.file, 0}, "contacts.materials", "there is no material named `" + name + "`"});
+        if (a < 0) fault("contacts.materials", "there is no material named `" + row.a + "`");
+        if (b < 0) fault("contacts.materials", "there is no material named `" + row.b + "`");
         if (a >= 0 && b >= 0) model.joint_of_materials[a * nm + b] = model.joint_of_materials[b * nm + a] = j;
     }
 
-    for (const auto& row : scenario.contacts.blocks) {
+    for (const auto& row : contacts.blocks) {
         const std::vector<BlockId> as = blocks_named(model, row.a), bs = blocks_named(model, row.b);
         const int j = joint(row.joint, "contacts.blocks");
-        for (const auto& [name, found] : {std::pair(row.a, &as), std::pair(row.b, &bs)})
-            if (found->empty())
-                faults.push_back({{scenario.file, 0}, "contacts.blocks", "no block or region is named `" + name + "`"});
+        if (as.empty()) fault("contacts.blocks", "no block or region is named `" + row.a + "`");
+        if (bs.empty()) fault("contacts.blocks", "no block or region is named `" + row.b + "`");
         if (as.size() * bs.size() > most_block_pairs) {
-            faults.push_back({{scenario.file, 0}, "contacts.blocks",
-                              "`" + row.a + "` and `" + row.b + "` are too many block pairs; give the regions a material and " +
-                                  "use contacts.materials"});
+            fault("contacts.blocks", "`" + row.a + "` and `" + row.b + "` are too many pairs of blocks; give one of them a " +
+                                         "material of its own and use contacts.materials");
             continue;
         }
         for (const BlockId a : as)

@@ -1,5 +1,6 @@
 #include "model/select.hpp"
 
+#include "core/text.hpp"
 #include "geometry/polygon.hpp"
 #include "model/build.hpp"
 
@@ -10,8 +11,6 @@ namespace {
 
 // Points on an edge belong to the block although rounding may put them outside; far below any gap that matters.
 constexpr double on_edge = 1e-9;  // m
-
-std::string place(const Vec2& p) { return "(" + std::to_string(p.x()) + ", " + std::to_string(p.y()) + ")"; }
 
 std::vector<BlockId> matching(const Model& model, const Selector& selector) {
     if (!selector.block.empty()) return blocks_named(model, selector.block);
