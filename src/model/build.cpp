@@ -94,7 +94,7 @@ void Builder::cut_rock_into_shapes() {
         if (!region.material.empty()) material(region.material, rock.where, "rock.regions." + region.name + ".material");
     }
     throw_faults();
-    rock_ = cut_rock(rock, scenario_.folder, model_.material_names);
+    rock_ = cut_rock(rock, model_.material_names);
     shapes_ = rock_.shapes;
     scene_.report.cut = rock_.report;
     scene_.report.trace_count = rock_.trace_count;

@@ -21,6 +21,6 @@ struct CutRock {
 };
 
 /// Cuts the rock along everything it names. material_names: for the indices in the shapes.
-CutRock cut_rock(const RockSpec& rock, const std::string& folder, const std::vector<std::string>& material_names);
+CutRock cut_rock(const RockSpec& rock, const std::vector<std::string>& material_names);
 
 }  // namespace talus

@@ -299,6 +299,116 @@ TEST_CASE("a rotated block of odd coordinates far away still touches its neighbo
     CHECK(build(scene).report.faces_per_joint[0] == 1);
 }
 
+TEST_CASE("rock is held where it has an edge on an extreme side of the outline") {
+    // Grid of 4 x 3 unit blocks; a step at the upper right, so that only the lower two rows reach the right side.
+    Scenario scene = rock({{0, 0}, {4, 0}, {4, 2}, {3, 2}, {3, 3}, {0, 3}}, {joint_set(0, 1), joint_set(90, 1)});
+    const auto count = [&](auto&& property) {
+        const Model m = build(scene).model;
+        int n = 0;
+        for (BlockId b = 0; b < m.blocks.size(); ++b) n += property(m, b);
+        return n;
+    };
+    const auto is_held = [](const Model& m, BlockId b) { return m.blocks.held(b); };
+    scene.rock->held.left = SideSupport::held;
+    CHECK(count(is_held) == 3);
+    scene.rock->held.right = SideSupport::held;
+    CHECK(count(is_held) == 5);
+    scene.rock->held.top = SideSupport::held;
+    CHECK(count(is_held) == 7);  // two more in the upper row; the block below the step has no edge on the extreme top
+    scene.rock->held = {};
+    scene.rock->held.bottom = SideSupport::roller;
+    CHECK(count(is_held) == 0);
+    CHECK(count([](const Model& m, BlockId b) {
+              return m.blocks.inv_mass[b].x() > 0.0 && m.blocks.inv_mass[b].y() == 0.0 && m.blocks.inv_inertia[b] == 0.0;
+          }) == 4);
+    scene.rock->held.left = SideSupport::roller;  // the corner block is on both
+    CHECK(count(is_held) == 1);
+}
+
+TEST_CASE("rock is held when it reaches beyond a line, not when it ends on it") {
+    Scenario scene = rock(rectangle(0, 0, 4, 3), {joint_set(0, 1), joint_set(90, 1)});
+    const auto held_blocks = [&] {
+        const Model m = build(scene).model;
+        int n = 0;
+        for (BlockId b = 0; b < m.blocks.size(); ++b) n += m.blocks.held(b);
+        return n;
+    };
+    scene.rock->held.below = 1.0;
+    CHECK(held_blocks() == 4);
+    scene.rock->held.below = 1.0 + 1e-6;
+    CHECK(held_blocks() == 8);
+    scene.rock->held.above = 2.5;
+    CHECK(held_blocks() == 12);
+    scene.rock->held = {};
+    scene.rock->held.inside = {rectangle(0.4, 0.4, 1.6, 0.6)};
+    CHECK(held_blocks() == 2);
+}
+
+TEST_CASE("faces along a joint set with a joint of its own have that joint, unless a pair of blocks is named") {
+    Scenario scene = rock(rectangle(0, 0, 4, 3), {joint_set(0, 1, "bedding"), joint_set(90, 1)});
+    scene.joints = {joint("plain"), joint("bedding"), joint("special")};
+    Scene built = build(scene);
+    REQUIRE(built.model.blocks.size() == 12);
+    CHECK(built.report.faces_per_joint == std::vector<int>{3 * 3, 4 * 2, 0});
+    const Model& m = built.model;
+    for (PartId a = 0; a < m.parts.size(); ++a)
+        for (PartId b = a + 1; b < m.parts.size(); ++b) {
+            const Vec2 apart = m.blocks.start[b] - m.blocks.start[a];
+            if (std::abs(apart.norm() - 1.0) > 1e-9) continue;
+            CHECK(m.joints[m.joint_between(a, b)].name == (std::abs(apart.y()) > 0.5 ? "bedding" : "plain"));
+        }
+}
+
+TEST_CASE("a named pair goes before the joint set that cut it, and that before materials") {
+    Scenario scene = rock(rectangle(0, 0, 2, 2), {joint_set(0, 1, "bedding")});
+    scene.joints = {joint("plain"), joint("bedding"), joint("special"), joint("soft")};
+    scene.materials.push_back({"clay", 2000.0});
+    scene.rock->regions = {{"top", rectangle(0, 1, 2, 2), "clay"}};
+    scene.contacts.materials = {{"rock", "clay", "soft"}};
+    Model m = build(scene).model;
+    REQUIRE(m.blocks.size() == 2);
+    CHECK(m.joints[m.joint_between(0, 1)].name == "bedding");
+    CHECK(m.blocks.mass[0] + m.blocks.mass[1] == Approx(2 * (2500.0 + 2000.0)));
+
+    scene.blocks = {block("beam", rectangle(0, 2, 2, 3))};
+    scene.contacts.blocks = {{"top", "beam", "special"}};
+    m = build(scene).model;
+    const BlockId top = m.blocks.region[0] == 0 ? 0 : 1;
+    CHECK(m.region_names == std::vector<std::string>{"top"});
+    CHECK(m.joints[m.joint_between(top, 2)].name == "special");
+    CHECK(m.joints[m.joint_between(1 - top, 2)].name == "plain");
+    CHECK(m.joints[m.joint_between(0, 1)].name == "bedding");
+}
+
+TEST_CASE("blocks of rock touch each other along inclined joints exactly once") {
+    // Sum over faces of twice the length + the outline = sum of the perimeters of all blocks.
+    Scenario scene = rock(rectangle(0, 0, 20, 12), {joint_set(-35, 1.3), joint_set(70, 1.7), joint_set(12, 2.9)});
+    scene.joints = {bonded_joint("plain", 1e5, 0.0)};
+    const Scene built = build(scene);
+    double faces = 0.0, edges = 0.0;
+    for (const JointFace& face : built.model.faces) faces += face.s1 - face.s0;
+    for (int k = 0; k < built.model.corners.size(); ++k)
+        if (!built.model.corners.internal[k]) edges += built.model.corners.length[k];
+    CHECK(built.model.blocks.size() > 100);
+    CHECK(2.0 * faces + 64.0 == Approx(edges).epsilon(1e-12));
+}
+
+TEST_CASE("a single block may stand on cut rock but not in it") {
+    Scenario scene = rock({{0, 0}, {10, 0}, {10, 4}, {0, 2}}, {joint_set(40, 1.5)});
+    const double slope = std::atan2(2.0, 10.0);
+    const Vec2 along(std::cos(slope), std::sin(slope)), up = perp(along), foot = Vec2(0, 2) + 3.0 * along;
+    scene.blocks = {block("house", {foot, foot + 2.0 * along, foot + 2.0 * along + up, foot + up})};
+    const Scene built = build(scene);
+    const BlockId house = built.model.blocks.size() - 1;
+    scene.joints = {bonded_joint("plain", 1e5, 0.0)};
+    double length = 0.0;
+    for (const JointFace& face : build(scene).model.faces)
+        if (built.model.parts.block[face.part_b] == house) length += face.s1 - face.s0;
+    CHECK(length == Approx(2.0));
+    scene.blocks[0].outline = shifted(scene.blocks[0].outline, Vec2(0, -0.1));
+    CHECK(report_of(scene).find("block `house` overlaps the block of rock at") != std::string::npos);
+}
+
 TEST_CASE("warnings name what was hardly meant") {
     Scenario scene = with({block("a", rectangle(0, 0, 1, 1)), block("b", rectangle(1, 0, 2, 1)),
                            block("lonely", rectangle(8, 8, 9, 9))});
