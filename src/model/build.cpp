@@ -51,14 +51,14 @@ private:
     Scene scene_;
     Model& model_;
     std::vector<Fault> faults_;
-    CutRock rock_;                         // no shapes if the scene has no rock
-    std::vector<Shape> shapes_;            // those of the rock first
-    std::vector<double> density_;          // [nm] kg/m3
-    std::vector<Vec2> corner_;             // [nc] m, as given
-    Box all_{};                            // m, around everything
-    double tolerance_ = 0.0;               // m
+    CutRock rock_;                 // no shapes if the scene has no rock
+    std::vector<Shape> shapes_;    // those of the rock first
+    std::vector<double> density_;  // [nm] kg/m3
+    std::vector<Vec2> corner_;     // [nc] m, as given
+    Box all_{};                    // m, around everything
+    double tolerance_ = 0.0;       // m
     Neighbours neighbours_;
-    std::vector<int> joint_;               // of every touch
+    std::vector<int> joint_;  // of every touch
     Prestress prestress_;
 };
 
@@ -99,6 +99,7 @@ void Builder::cut_rock_into_shapes() {
     scene_.report.cut = rock_.report;
     scene_.report.trace_count = rock_.trace_count;
     scene_.report.tips_extended = rock_.tips_extended;
+    scene_.report.corners_snapped = rock_.corners_snapped;
 }
 
 void Builder::shape_single_blocks() {

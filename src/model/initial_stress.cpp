@@ -16,6 +16,8 @@ Eigen::Matrix2d tensor(const Eigen::Vector3d& xx_yy_xy) {
     return s;
 }
 
+// Stress below this share of the largest one is rounding and counts as none; ten times less would still catch it.
+constexpr double rounding_share = 1e-12;
 // A stress this much above the strength is rounding, not a fault of the scene.
 constexpr double strength_margin = 1e-9;
 
@@ -23,6 +25,7 @@ struct FaceStress {
     double sigma0 = 0.0, sigma1 = 0.0;  // Pa, normal stress at the two ends
     double shear = 0.0;                 // Pa, mean
     bool none() const { return sigma0 == 0.0 && sigma1 == 0.0 && shear == 0.0; }
+    double largest() const { return std::max({std::abs(sigma0), std::abs(sigma1), std::abs(shear)}); }
 };
 
 FaceStress traction(const StressField& field, const Vec2& from, const Vec2& to, const Vec2& normal) {
@@ -38,8 +41,34 @@ bool beyond_strength(const FaceStress& stress, const Joint& joint) {
 }
 
 const InitialStressSpec::OnJoint* given_on(const InitialStressSpec& spec, const std::string& joint) {
-    const auto at = std::find_if(spec.joints.begin(), spec.joints.end(), [&](const auto& row) { return row.joint == joint; });
+    const auto at =
+        std::find_if(spec.joints.begin(), spec.joints.end(), [&](const auto& row) { return row.joint == joint; });
     return at == spec.joints.end() ? nullptr : &*at;
+}
+
+std::pair<Vec2, Vec2> ends(const Model& model, std::span<const Vec2> corner, const Neighbours::Touch& touch) {
+    const Vec2 along = perp(model.corners.normal[touch.edge_a]);
+    return {corner[touch.edge_a] + touch.s0 * along, corner[touch.edge_a] + touch.s1 * along};
+}
+
+// Given joint by joint or else by the field; nothing without a spec.
+std::vector<FaceStress> stress_on(const Model& model, const std::vector<Neighbours::Touch>& touches,
+                                  std::span<const int> joint, std::span<const Vec2> corner, const InitialStressSpec* spec,
+                                  const StressField& field) {
+    std::vector<FaceStress> all(touches.size());
+    if (spec == nullptr) return all;
+    double largest = 0.0;
+    for (std::size_t i = 0; i < touches.size(); ++i) {
+        const auto* given = given_on(*spec, model.joints[joint[i]].name);
+        const auto [from, to] = ends(model, corner, touches[i]);
+        all[i] = given ? FaceStress{given->normal, given->normal, given->shear}
+                       : traction(field, from, to, model.corners.normal[touches[i].edge_a]);
+        largest = std::max(largest, all[i].largest());
+    }
+    for (FaceStress& stress : all)
+        for (double* part : {&stress.sigma0, &stress.sigma1, &stress.shear})
+            if (std::abs(*part) < rounding_share * largest) *part = 0.0;
+    return all;
 }
 
 // What the field puts on an edge from outside. It is linear along the edge and so is the arm: Simpson's rule is exact.
@@ -74,6 +103,7 @@ StressField stress_field(const InitialStressSpec& spec, double rock_weight, doub
 
 Prestress make_faces(const Model& model, const std::vector<Neighbours::Touch>& touches, std::span<const int> joint,
                      std::span<const Vec2> corner, const InitialStressSpec* spec, const StressField& field) {
+    const std::vector<FaceStress> stresses = stress_on(model, touches, joint, corner, spec, field);
     const std::vector<std::uint8_t> fixed = immovable(model);
     Prestress all;
     int cells = 0;
@@ -82,14 +112,7 @@ Prestress make_faces(const Model& model, const std::vector<Neighbours::Touch>& t
         const BlockId a = model.parts.block[touch.part_a], b = model.parts.block[touch.part_b];
         if (fixed[a] && fixed[b]) continue;
         const Joint& acting = model.joints[joint[i]];
-        const Vec2& normal = model.corners.normal[touch.edge_a];
-        const Vec2 from = corner[touch.edge_a] + touch.s0 * perp(normal), to = corner[touch.edge_a] + touch.s1 * perp(normal);
-
-        FaceStress stress;
-        if (spec != nullptr) {
-            const auto* given = given_on(*spec, acting.name);
-            stress = given ? FaceStress{given->normal, given->normal, given->shear} : traction(field, from, to, normal);
-        }
+        FaceStress stress = stresses[i];
         if (acting.tension <= 0.0 && std::min(stress.sigma0, stress.sigma1) < 0.0) {
             stress.sigma0 = std::max(stress.sigma0, 0.0);
             stress.sigma1 = std::max(stress.sigma1, 0.0);
@@ -98,10 +121,10 @@ Prestress make_faces(const Model& model, const std::vector<Neighbours::Touch>& t
         const bool bonded = acting.tension > 0.0 || acting.cohesion > 0.0;
         if (!bonded && stress.none()) continue;
         if (beyond_strength(stress, acting)) ++all.beyond_strength;
-        const Vec2& centroid_b = model.blocks.start[b];
+        const auto [from, to] = ends(model, corner, touch);
         all.faces.push_back({touch.part_a, touch.part_b, touch.edge_a, touch.edge_b, joint[i], bonded, cells, touch.s0,
-                             touch.s1, from - centroid_b, to - centroid_b, stress.sigma0, stress.sigma1,
-                             stress.shear * (touch.s1 - touch.s0)});
+                             touch.s1, from - model.blocks.start[b], to - model.blocks.start[b], stress.sigma0,
+                             stress.sigma1, stress.shear * (touch.s1 - touch.s0)});
         cells += acting.cells;
     }
     return all;
@@ -124,7 +147,8 @@ std::vector<Contact> first_contacts(const Model& model) {
         contact.length = length;
         contact.normal_force = 0.5 * sum * length;
         contact.shear_force = face.shear_force0;
-        contact.point = model.blocks.start[model.parts.block[face.part_b]] + face.arm_b0 + share * (face.arm_b1 - face.arm_b0);
+        contact.point =
+            model.blocks.start[model.parts.block[face.part_b]] + face.arm_b0 + share * (face.arm_b1 - face.arm_b0);
         contact.normal = model.corners.normal[face.edge_a];
         contacts.push_back(contact);
     }

@@ -14,12 +14,12 @@
 
 namespace talus {
 
-/// Stress tensor S that varies linearly with place; compression positive. The traction of part a on part b across a face with
-/// unit normal n from a to b is S n (Cauchy): n . S n presses, perp(n) . S n shears.
+/// Stress tensor S that varies linearly with place; compression positive. The traction of part a on part b across a face
+/// with unit normal n from a to b is S n (Cauchy): n . S n presses, perp(n) . S n shears.
 struct StressField {
-    Eigen::Matrix2d at_reference = Eigen::Matrix2d::Zero();                                    // Pa
-    Eigen::Matrix2d per_x = Eigen::Matrix2d::Zero(), per_y = Eigen::Matrix2d::Zero();         // Pa/m
-    Vec2 reference = Vec2::Zero();                                                             // m
+    Eigen::Matrix2d at_reference = Eigen::Matrix2d::Zero();                            // Pa
+    Eigen::Matrix2d per_x = Eigen::Matrix2d::Zero(), per_y = Eigen::Matrix2d::Zero();  // Pa/m
+    Vec2 reference = Vec2::Zero();                                                     // m
 
     Eigen::Matrix2d operator()(const Vec2& at) const {
         return at_reference + (at.x() - reference.x()) * per_x + (at.y() - reference.y()) * per_y;
@@ -30,9 +30,9 @@ struct StressField {
 StressField stress_field(const InitialStressSpec& spec, double rock_weight, double top);
 
 struct Prestress {
-    std::vector<JointFace> faces;          // bonded or under stress, sorted by parts, cells numbered
-    int beyond_strength = 0;               // faces whose shear or tension is more than their joint can carry
-    int tension_dropped = 0;               // faces whose joint cannot pull: tension was set to zero
+    std::vector<JointFace> faces;  // bonded or under stress, sorted by parts, cells numbered
+    int beyond_strength = 0;       // faces whose shear or tension is more than their joint can carry
+    int tension_dropped = 0;       // faces whose joint cannot pull: tension was set to zero
 };
 
 /// The joint faces of a scene: one per touching pair whose joint can be bonded or that carries stress, none between two

@@ -26,8 +26,10 @@ void sort_table(std::vector<std::pair<Pair, int>>& table) {
     std::stable_sort(table.begin(), table.end(), [](const auto& x, const auto& y) { return x.first < y.first; });
     std::vector<std::pair<Pair, int>> unique;
     for (const auto& row : table) {
-        if (!unique.empty() && unique.back().first == row.first) unique.back() = row;
-        else unique.push_back(row);
+        if (!unique.empty() && unique.back().first == row.first)
+            unique.back() = row;
+        else
+            unique.push_back(row);
     }
     table = std::move(unique);
 }
@@ -103,7 +105,8 @@ void fill_joint_tables(const Scenario& scenario, Model& model, std::vector<Fault
         if (as.empty()) fault("contacts.blocks", "no block or region is named `" + row.a + "`");
         if (bs.empty()) fault("contacts.blocks", "no block or region is named `" + row.b + "`");
         if (as.size() * bs.size() > most_block_pairs) {
-            fault("contacts.blocks", "`" + row.a + "` and `" + row.b + "` are too many pairs of blocks; give one of them a " +
+            fault("contacts.blocks", "`" + row.a + "` and `" + row.b +
+                                         "` are too many pairs of blocks; give one of them a " +
                                          "material of its own and use contacts.materials");
             continue;
         }
@@ -114,8 +117,8 @@ void fill_joint_tables(const Scenario& scenario, Model& model, std::vector<Fault
     sort_table(model.joint_of_blocks);
 }
 
-void fill_joint_of_faces(std::span<const Neighbours::Touch> touches, std::span<const Vec2> corner, std::vector<CutSeam> seams,
-                         std::span<const int> joint_of_source, double tolerance, Model& model) {
+void fill_joint_of_faces(std::span<const Neighbours::Touch> touches, std::span<const Vec2> corner,
+                         std::vector<CutSeam> seams, std::span<const int> joint_of_source, double tolerance, Model& model) {
     std::erase_if(seams, [&](const CutSeam& seam) { return seam.source < 0 || joint_of_source[seam.source] < 0; });
     const auto between = [](const CutSeam& seam) { return ordered(seam.left, seam.right); };
     std::ranges::stable_sort(seams, {}, between);

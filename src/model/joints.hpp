@@ -22,7 +22,7 @@ void fill_joint_tables(const Scenario& scenario, Model& model, std::vector<Fault
 /// Fills joint_of_faces: touching parts get the joint of the seam that covers most of their common stretch.
 /// corner[nc]: as given, m; seams name the first blocks of the model; joint_of_source[i]: index of the joint of source i,
 /// -1 = none of its own; tolerance: m, how far a seam may lie beside an edge.
-void fill_joint_of_faces(std::span<const Neighbours::Touch> touches, std::span<const Vec2> corner, std::vector<CutSeam> seams,
-                         std::span<const int> joint_of_source, double tolerance, Model& model);
+void fill_joint_of_faces(std::span<const Neighbours::Touch> touches, std::span<const Vec2> corner,
+                         std::vector<CutSeam> seams, std::span<const int> joint_of_source, double tolerance, Model& model);
 
 }  // namespace talus

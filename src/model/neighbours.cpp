@@ -66,9 +66,8 @@ Polygon common_area(std::span<const Vec2> a, std::span<const Vec2> b) {
 }
 
 void keep_deepest(std::vector<Neighbours::Overlap>& overlaps) {
-    std::sort(overlaps.begin(), overlaps.end(), [](const auto& x, const auto& y) {
-        return std::tie(x.a, x.b, y.depth) < std::tie(y.a, y.b, x.depth);
-    });
+    std::sort(overlaps.begin(), overlaps.end(),
+              [](const auto& x, const auto& y) { return std::tie(x.a, x.b, y.depth) < std::tie(y.a, y.b, x.depth); });
     const auto same = [](const auto& x, const auto& y) { return x.a == y.a && x.b == y.b; };
     overlaps.erase(std::unique(overlaps.begin(), overlaps.end(), same), overlaps.end());
 }

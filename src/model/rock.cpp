@@ -14,7 +14,8 @@ CutInput input_of(const RockSpec& rock) {
     input.outline = rock.outline;
     input.holes = rock.holes;
     input.lines = joint_lines(rock);
-    for (std::size_t i = 0; i < rock.regions.size(); ++i) input.regions.push_back({rock.regions[i].outline, static_cast<int>(i)});
+    for (std::size_t i = 0; i < rock.regions.size(); ++i)
+        input.regions.push_back({rock.regions[i].outline, static_cast<int>(i)});
     if (rock.slivers.given) {
         input.sliver_area = rock.slivers.area;
         input.sliver_width = rock.slivers.width;
@@ -52,6 +53,7 @@ CutRock cut_rock(const RockSpec& rock, const std::vector<std::string>& material_
         const TraceLines traces = trace_lines(*rock.traces, tip_reach(rock), 0);
         result.trace_count = traces.traces;
         result.tips_extended = traces.tips_extended;
+        result.corners_snapped = traces.corners_snapped;
     }
     return result;
 }

@@ -18,7 +18,7 @@ std::vector<BlockId> matching(const Model& model, const Selector& selector) {
     const int region = index_of(model.region_names, selector.region);
     for (BlockId b = 0; b < model.blocks.size(); ++b) {
         const Vec2& start = model.blocks.start[b];
-        const bool meant = !selector.region.empty() ? model.blocks.region[b] == region
+        const bool meant = !selector.region.empty() ? region >= 0 && model.blocks.region[b] == region
                            : selector.at            ? contains(model, b, *selector.at - start, on_edge)
                                                     : contains(selector.inside, start);
         if (meant) found.push_back(b);

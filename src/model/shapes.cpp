@@ -8,9 +8,9 @@ namespace talus {
 namespace {
 
 struct Measures {
-    double area = 0.0;               // m2
-    Vec2 centroid = Vec2::Zero();    // m
-    double polar_moment = 0.0;       // m4, about the centroid
+    double area = 0.0;             // m2
+    Vec2 centroid = Vec2::Zero();  // m
+    double polar_moment = 0.0;     // m4, about the centroid
 };
 
 Measures measure(const std::vector<Polygon>& parts) {

@@ -33,7 +33,8 @@ double reach(const Model& model, std::span<const Vec2> corner, BlockId block, bo
 
 }  // namespace
 
-std::vector<OuterEdge> edges_on_side(const Model& model, std::span<const Vec2> corner, int blocks, const Box& outline, Side side) {
+std::vector<OuterEdge> edges_on_side(const Model& model, std::span<const Vec2> corner, int blocks, const Box& outline,
+                                     Side side) {
     const double tolerance = relative_tolerance * size(outline);
     const int axis = side == Side::left || side == Side::right ? 0 : 1;
     const double line = side == Side::left     ? outline.xmin

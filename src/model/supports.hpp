@@ -18,7 +18,8 @@ struct OuterEdge {
 };
 
 /// Edges of the first `blocks` blocks that lie on that extreme side of a box, to 1e-9 of its size.
-std::vector<OuterEdge> edges_on_side(const Model& model, std::span<const Vec2> corner, int blocks, const Box& outline, Side side);
+std::vector<OuterEdge> edges_on_side(const Model& model, std::span<const Vec2> corner, int blocks, const Box& outline,
+                                     Side side);
 
 /// Applies the rules of `held` to the first `rock_blocks` blocks.
 void hold_rock(const HeldSpec& held, std::span<const Vec2> corner, int rock_blocks, const Box& outline, Model& model);

@@ -55,7 +55,8 @@ std::vector<std::string> warnings(const Scenario& scenario, const Model& model, 
         all.push_back("no block is held or driven: under gravity the whole scene falls");
     if (model.blocks.size() > 1)
         if (const auto loose = loose_blocks(model, neighbours); !loose.empty())
-            all.push_back(std::to_string(loose.size()) + " free block(s) share no edge with another at the start, the first at " +
+            all.push_back(std::to_string(loose.size()) +
+                          " free block(s) share no edge with another at the start, the first at " +
                           place(model.blocks.start[loose.front()] + model.origin));
     if (prestress.beyond_strength > 0)
         all.push_back("initial stress is beyond the strength of the joint on " + std::to_string(prestress.beyond_strength) +

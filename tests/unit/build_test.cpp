@@ -292,7 +292,8 @@ TEST_CASE("a wall far from the origin is the same wall") {
 }
 
 TEST_CASE("a rotated block of odd coordinates far away still touches its neighbour") {
-    // 0.1 and 0.7 are not exact in binary: at 6.5e6 m the two copies of a corner agree only because they are the same number.
+    // 0.1 and 0.7 are not exact in binary: at 6.5e6 m the two copies of a corner agree only because they are the same
+    // number.
     const Vec2 away(4.5e5, 6.5e6);
     Scenario scene = with({block("a", shifted(turned(rectangle(0.1, 0.1, 0.7, 0.7), 20), away)),
                            block("b", shifted(turned(rectangle(0.7, 0.1, 1.3, 0.7), 20), away))});
@@ -410,8 +411,8 @@ TEST_CASE("a single block may stand on cut rock but not in it") {
 }
 
 TEST_CASE("warnings name what was hardly meant") {
-    Scenario scene = with({block("a", rectangle(0, 0, 1, 1)), block("b", rectangle(1, 0, 2, 1)),
-                           block("lonely", rectangle(8, 8, 9, 9))});
+    Scenario scene =
+        with({block("a", rectangle(0, 0, 1, 1)), block("b", rectangle(1, 0, 2, 1)), block("lonely", rectangle(8, 8, 9, 9))});
     scene.joints.push_back(joint("forgotten"));
     scene.joints.push_back(bonded_joint("glue", 1e5, 1e5));
     scene.contacts.blocks = {{"a", "lonely", "glue"}};
@@ -421,5 +422,6 @@ TEST_CASE("warnings name what was hardly meant") {
     CHECK(told[1].starts_with("joint `glue` has strength to bond blocks"));
     CHECK(told[2].starts_with("no block is held or driven"));
     CHECK(told[3].starts_with("1 free block(s) share no edge"));
-    CHECK(build(with({held(block("base", rectangle(0, 0, 1, 1))), block("top", rectangle(0, 1, 1, 2))})).report.warnings.empty());
+    CHECK(build(with({held(block("base", rectangle(0, 0, 1, 1))), block("top", rectangle(0, 1, 1, 2))}))
+              .report.warnings.empty());
 }

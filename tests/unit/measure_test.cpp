@@ -127,6 +127,9 @@ TEST_CASE("blocks are selected by name, by a point at the start and by an outlin
     CHECK_THROWS_AS(select(scene.model, scene.state, named("a")), InputError);
     at.at = Vec2(50.0, 50.0);
     CHECK_THROWS_AS(select(scene.model, scene.state, at), InputError);
+    Selector region;
+    region.region = "unknown";
+    CHECK_THROWS_AS(select(scene.model, scene.state, region), InputError);
 }
 
 TEST_CASE("a load with a point acts on the arm from the centroid") {
