@@ -10,8 +10,8 @@ namespace talus {
 
 struct CutLine {  // segment of a joint, crack or trace
     Vec2 from, to;
-    int source;  // index of what it belongs to (joint set, crack, trace map); -1 = none. Where lines of several
-};               // sources lie on each other, the lowest index counts
+    int source;  // index of what it belongs to (joint set, crack, trace map); -1 = none; where lines coincide, the lowest
+};
 
 struct CutRegion {
     Polygon outline;
@@ -19,10 +19,9 @@ struct CutRegion {
 };
 
 struct CutInput {
-    Polygon outline;             // simple, counter-clockwise
-    std::vector<Polygon> holes;  // cut and left empty
-    std::vector<CutRegion>
-        regions;  // cut along their outlines; blocks inside carry the id (the last one that contains them)
+    Polygon outline;
+    std::vector<Polygon> holes;      // cut and left empty
+    std::vector<CutRegion> regions;  // cut along their outlines; blocks inside carry the id of the last one around them
     std::vector<CutLine> lines;
     // Slivers, blocks below one of these limits, are merged with the neighbour of the longest common edge, smallest first,
     // until none is left; the joint that parted them goes on along their other side if nothing else runs there. Zero keeps
@@ -34,7 +33,7 @@ struct CutInput {
 };
 
 struct CutBlock {
-    Polygon outline;             // counter-clockwise, no collinear corners except where a neighbour's corner forbids none
+    Polygon outline;             // counter-clockwise, without corners that are straight to rounding
     std::vector<Polygon> holes;  // clockwise; a block around an island
     std::vector<Polygon> parts;  // convex, counter-clockwise; one equal to outline if the block is convex
     double area;                 // m2
