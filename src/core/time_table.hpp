@@ -12,9 +12,9 @@ struct TimeTable {
     static TimeTable constant(double v) { return {{0.0}, {v}}; }
     double operator()(double t) const;
     bool is_constant() const { return time.size() < 2; }
+    TimeTable frozen() const { return constant((*this)(0.0)); }  // at its value at time 0
 };
 
-/// Sum of two tables at every time.
 TimeTable operator+(const TimeTable& a, const TimeTable& b);
 
 }  // namespace talus

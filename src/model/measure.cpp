@@ -15,14 +15,6 @@ Vec2 turned(const Vec2& v, double angle) {
     return {c * v.x() - s * v.y(), s * v.x() + c * v.y()};
 }
 
-double radius(const Model& model, BlockId b) {
-    const std::vector<int>& first = model.parts.first_corner;
-    double largest = 0.0;
-    for (int k = first[model.blocks.first_part[b]]; k < first[model.blocks.first_part[b + 1]]; ++k)
-        largest = std::max(largest, model.corners.arm[k].squaredNorm());
-    return std::sqrt(largest);
-}
-
 // N: what is left over of all forces along the axes in which the block is free.
 double out_of_balance(const Blocks& blocks, BlockId b, const Force& load) {
     const double x = blocks.inv_mass[b].x() > 0.0 ? load.force.x() : 0.0;
@@ -65,7 +57,12 @@ double unbalanced_ratio(const Model& model, const State& state) {
     for (BlockId b = 0; b < model.blocks.size(); ++b) {
         if (state.removed[b] || model.blocks.held(b)) continue;
         ++moving;
-        largest = std::max(largest, out_of_balance(model.blocks, b, state.load[b]));
+        Force load = state.load[b];
+        if (!state.damping.empty()) {  // local damping hides up to its share of what is out of balance
+            load.force -= state.damping[b].force;
+            load.torque -= state.damping[b].torque;
+        }
+        largest = std::max(largest, out_of_balance(model.blocks, b, load));
         contact_sum += pressed[b];
         weight_sum += model.blocks.mass[b] * gravity;
     }
@@ -86,7 +83,7 @@ double max_speed(const Model& model, const State& state) {
     for (BlockId b = 0; b < model.blocks.size(); ++b) {
         const double spin = std::abs(state.motion.spin[b]);
         if (!state.removed[b])
-            fastest = std::max(fastest, state.motion.velocity[b].norm() + (spin > 0.0 ? spin * radius(model, b) : 0.0));
+            fastest = std::max(fastest, state.motion.velocity[b].norm() + spin * model.blocks.radius[b]);
     }
     return fastest;
 }

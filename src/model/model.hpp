@@ -17,6 +17,7 @@ struct Blocks {
     std::vector<int> first_part;           // [nb+1] parts of block b are [first_part[b], first_part[b+1])
     std::vector<double> mass, inertia;     // [nb] kg, kg m2 about the centroid
     std::vector<double> area;              // [nb] m2
+    std::vector<double> radius;            // [nb] m, of the farthest corner from the centroid
     std::vector<Vec2> inv_mass;            // [nb] 1/kg along x and y; 0 = held or driven along that axis
     std::vector<double> inv_inertia;       // [nb] 1/(kg m2); 0 = rotation held or driven
     std::vector<Vec2> start;               // [nb] m, centroid when the scene was built
@@ -100,6 +101,7 @@ struct Model {
     TimeTable gravity_x, gravity_y;        // m/s2, gravity and body acceleration together
     double local_damping = 0.0;            // Cundall's alpha
     double contact_damping = 0.0;          // s
+    double release_time = 0.0;             // s over which the forces of deleted blocks fade in this stage
     bool face_path = true;
 
     int cells() const { return faces.empty() ? 0 : faces.back().first_cell + joints[faces.back().joint].cells; }

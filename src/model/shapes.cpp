@@ -2,6 +2,7 @@
 
 #include "geometry/polygon.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace talus {
@@ -26,6 +27,13 @@ Measures measure(const std::vector<Polygon>& parts) {
     for (const Polygon& part : parts)
         all.polar_moment += polar_moment(part) + signed_area(part) * (centroid(part) - all.centroid).squaredNorm();
     return all;
+}
+
+double radius(const std::vector<Polygon>& parts, const Vec2& centre) {
+    double largest = 0.0;
+    for (const Polygon& part : parts)
+        for (const Vec2& p : part) largest = std::max(largest, (p - centre).norm());
+    return largest;
 }
 
 void add_part(const Polygon& polygon, BlockId block, Model& model) {
@@ -85,6 +93,7 @@ std::vector<Vec2> fill_blocks(const std::vector<Shape>& shapes, std::span<const 
             given.insert(given.end(), part.begin(), part.end());
         }
         blocks.first_part.push_back(model.parts.size());
+        blocks.radius.push_back(radius(shape.parts, size.centroid));
         if (shape.parts.size() > 1) mark_internal_edges(block, model);
     }
     return given;

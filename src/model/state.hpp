@@ -22,7 +22,8 @@ struct Force {
     double torque = 0.0;                   // N m, about the centroid
 };
 
-/// One contact between two convex parts. It exists while it carries force, is bonded, or has memory; see contact/contacts.hpp.
+/// One contact between two convex parts. It exists while it carries force, is bonded, or has memory;
+/// see contact/contacts.hpp.
 struct Contact {
     PartId part_a, part_b;                 // key: block of a < block of b; lists are sorted by (part_a, part_b)
     int joint;
@@ -36,6 +37,7 @@ struct Contact {
     double overlap = 0.0;                  // m, mean over the length; < 0 open
     double normal_force = 0.0;             // N, compression > 0
     double shear_force = 0.0;              // N on b along perp(normal)
+    double strength = 0.0;                 // N, shear force it could carry now
     double slip = 0.0;                     // m, path slipped so far
     double slip_sum = 0.0;                 // m, signed sum: sense of the slip
     double dilation = 0.0;                 // m, how far slip has opened it
@@ -64,9 +66,11 @@ struct State {
     std::int64_t step = 0;                 // since the last reset
     std::int64_t total_steps = 0;
     int stage = 0;                         // index into the list of stages; the last one is `run`
-    int step_halvings = 0;                 // dt = stage step / 2^halvings
+    double stage_step = 0.0;               // s, chosen at the start of the stage
+    int step_halvings = 0;                 // dt = stage_step / 2^step_halvings
     Motion motion;
-    std::vector<Force> load;               // [nb] sum of all forces at `time`
+    std::vector<Force> load;               // [nb] sum of all forces at `time`, also on held blocks
+    std::vector<Force> damping;            // [nb] share of local damping in it; empty = none
     Contacts contacts;
     std::vector<std::uint8_t> removed;     // [nb] deleted by a stage
     std::vector<Force> release;            // [nb] forces of deleted neighbours that fade away in this stage; empty = none

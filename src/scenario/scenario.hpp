@@ -200,8 +200,8 @@ struct StageSpec {  // in order, before `run`
     std::vector<Selector> remove;            // key: delete
     double release = 0.0;                    // s over which the forces of deleted blocks fade away
     std::vector<JointSpec> joints;           // key: change.joints, complete after merging with the earlier values
-    std::optional<VectorTable> gravity;      // time counted from the start of the stage
-    std::vector<LoadSpec> loads;             // key: loads; replaces the loads of the stage before when given
+    std::optional<VectorTable> gravity;      // in this stage only; time counted from its start
+    std::vector<LoadSpec> loads;             // in this stage only, instead of those of the scene
     bool loads_given = false;
     Until until;
     DampingSpec damping;

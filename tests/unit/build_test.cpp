@@ -51,6 +51,7 @@ TEST_CASE("mass and inertia of a rectangle and of a triangle are those of the te
     CHECK((m.blocks.start[1] - Vec2(11, 1)).norm() < 1e-14);
     CHECK(m.blocks.inertia[1] == Approx(2500.0 * 4.5 * (9.0 + 9.0) / 18.0));  // right triangle: m (a^2 + b^2) / 18
     CHECK(m.blocks.inv_inertia[1] * m.blocks.inertia[1] == Approx(1.0));
+    CHECK(m.blocks.radius[0] == Approx(std::hypot(2.0, 1.0)));
     CHECK(m.parts.thickness[0] == Approx(2.0));
     CHECK(m.parts.thickness[1] == Approx(3.0 / std::numbers::sqrt2));
 }

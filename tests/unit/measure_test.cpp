@@ -56,6 +56,15 @@ TEST_CASE("the unbalanced ratio does not see held axes and weighs torques by the
     CHECK(unbalanced_ratio(scene.model, scene.state) == 0.0);
 }
 
+TEST_CASE("the unbalanced ratio is the same with and without local damping") {
+    Scene scene = pair_on_base();
+    scene.state.load[1].force = {0.0, -50000.0 + 40000.0};
+    scene.state.load[1].torque = 7.0;
+    scene.state.damping.assign(3, {});
+    scene.state.damping[1] = {Vec2(0.0, 40000.0), 7.0};
+    CHECK(unbalanced_ratio(scene.model, scene.state) == Approx(1.0));
+}
+
 TEST_CASE("the unbalanced ratio is measured against contact forces when they are larger than the weights") {
     Scene scene = pair_on_base();
     scene.state.load[1].force = {1e5, 0.0};

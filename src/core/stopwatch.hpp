@@ -1,0 +1,23 @@
+#pragma once
+
+#include <chrono>
+
+namespace talus {
+
+class Stopwatch {
+public:
+    Stopwatch() : start_(Clock::now()) {}
+    double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
+    double lap() {  // s since the last lap
+        const auto now = Clock::now();
+        const double elapsed = std::chrono::duration<double>(now - start_).count();
+        start_ = now;
+        return elapsed;
+    }
+
+private:
+    using Clock = std::chrono::steady_clock;
+    Clock::time_point start_;
+};
+
+}  // namespace talus

@@ -1,0 +1,193 @@
+#include "dynamics/motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace talus {
+namespace {
+
+constexpr int chunk = 256;  // blocks per partial sum; fixed, so that sums do not depend on the number of threads
+
+double sign(double v) { return v > 0.0 ? 1.0 : v < 0.0 ? -1.0 : 0.0; }
+
+struct BlockWork {  // of one chunk, J, and its largest speed, m/s
+    double all = 0.0, gravity = 0.0, damping = 0.0, driven = 0.0, speed = 0.0;
+};
+
+Force load_at(const Load& l, double t, double angle) {
+    const double c = std::cos(angle), s = std::sin(angle);
+    const Vec2 force(l.force_x(t), l.force_y(t));
+    const Vec2 arm(c * l.arm.x() - s * l.arm.y(), s * l.arm.x() + c * l.arm.y());
+    return {force, cross(arm, force) + l.moment(t)};
+}
+
+}  // namespace
+
+void kick(const Model& model, std::span<const Force> load, Motion& motion, double dt) {
+    const int nb = model.blocks.size();
+#pragma omp parallel for schedule(static)
+    for (int b = 0; b < nb; ++b) {
+        motion.velocity[b] += dt * load[b].force.cwiseProduct(model.blocks.inv_mass[b]);
+        motion.spin[b] += dt * load[b].torque * model.blocks.inv_inertia[b];
+    }
+}
+
+void drift(Motion& motion, double dt) {
+    const int nb = static_cast<int>(motion.position.size());
+#pragma omp parallel for schedule(static)
+    for (int b = 0; b < nb; ++b) {
+        motion.position[b] += dt * motion.velocity[b];
+        motion.angle[b] += dt * motion.spin[b];
+    }
+}
+
+void drive(const Model& model, double t, Motion& motion) {
+    for (const DrivenBlock& d : model.driven) {
+        if (d.x) motion.velocity[d.block].x() = d.velocity_x(t);
+        if (d.y) motion.velocity[d.block].y() = d.velocity_y(t);
+        if (d.rotation) motion.spin[d.block] = d.spin(t);
+    }
+}
+
+void place(const Model& model, const Motion& motion, bool all, Placed& placed) {
+    const int nb = model.blocks.size();
+    placed.arm.resize(model.corners.arm.size());
+    placed.normal.resize(model.corners.arm.size());
+#pragma omp parallel for schedule(static)
+    for (int b = 0; b < nb; ++b) {
+        if (!all && model.blocks.inv_inertia[b] == 0.0 && motion.spin[b] == 0.0) continue;
+        const double c = std::cos(motion.angle[b]), s = std::sin(motion.angle[b]);
+        const int begin = model.parts.first_corner[model.blocks.first_part[b]];
+        const int end = model.parts.first_corner[model.blocks.first_part[b + 1]];
+        for (int k = begin; k < end; ++k) {
+            const Vec2 &p = model.corners.arm[k], &n = model.corners.normal[k];
+            placed.arm[k] = {c * p.x() - s * p.y(), s * p.x() + c * p.y()};
+            placed.normal[k] = {c * n.x() - s * n.y(), s * n.x() + c * n.y()};
+        }
+    }
+}
+
+double release_share(const Model& model, double stage_time) {
+    return stage_time < model.release_time ? 1.0 - stage_time / model.release_time : 0.0;
+}
+
+void external_forces(const Model& model, const State& state, std::span<Force> load) {
+    const int nb = model.blocks.size();
+    const Vec2 g(model.gravity_x(state.stage_time), model.gravity_y(state.stage_time));
+#pragma omp parallel for schedule(static)
+    for (int b = 0; b < nb; ++b) load[b] = {model.blocks.mass[b] * g, 0.0};
+    for (const Load& l : model.loads) {
+        const Force f = load_at(l, state.stage_time, state.motion.angle[l.block]);
+        load[l.block].force += f.force;
+        load[l.block].torque += f.torque;
+    }
+    const double share = state.release.empty() ? 0.0 : release_share(model, state.stage_time);
+    if (share == 0.0) return;
+    for (int b = 0; b < nb; ++b) {
+        load[b].force += share * state.release[b].force;
+        load[b].torque += share * state.release[b].torque;
+    }
+}
+
+void damp_locally(const Model& model, const Motion& motion, std::span<Force> load, std::vector<Force>& damping) {
+    const int nb = model.blocks.size();
+    const double alpha = model.local_damping;
+    damping.resize(nb);
+#pragma omp parallel for schedule(static)
+    for (int b = 0; b < nb; ++b) {
+        const Vec2& free = model.blocks.inv_mass[b];
+        const Vec2 &f = load[b].force, &v = motion.velocity[b];
+        damping[b].force = {free.x() == 0.0 ? 0.0 : -alpha * std::abs(f.x()) * sign(v.x()),
+                            free.y() == 0.0 ? 0.0 : -alpha * std::abs(f.y()) * sign(v.y())};
+        damping[b].torque =
+            model.blocks.inv_inertia[b] == 0.0 ? 0.0 : -alpha * std::abs(load[b].torque) * sign(motion.spin[b]);
+        load[b].force += damping[b].force;
+        load[b].torque += damping[b].torque;
+    }
+}
+
+double account(const Model& model, const StepEnd& before, const StepEnd& after, const State& state, double dt,
+               Ledger& ledger) {
+    const int nb = model.blocks.size(), chunks = (nb + chunk - 1) / chunk;
+    std::vector<BlockWork> work(chunks);
+    const Motion& motion = state.motion;
+    const double t0 = state.stage_time - dt, t1 = state.stage_time;
+    const Vec2 g = 0.5 * Vec2(model.gravity_x(t0) + model.gravity_x(t1), model.gravity_y(t0) + model.gravity_y(t1));
+#pragma omp parallel for schedule(static)
+    for (int k = 0; k < chunks; ++k) {
+        BlockWork& w = work[k];
+        for (int b = k * chunk; b < std::min((k + 1) * chunk, nb); ++b) {
+            const Vec2 &free = model.blocks.inv_mass[b], &v = motion.velocity[b];
+            const double spin = motion.spin[b];
+            w.speed = std::max(w.speed, std::sqrt(v.squaredNorm()) + std::abs(spin) * model.blocks.radius[b]);
+            const double px = 0.5 * dt * v.x() * (before.load[b].force.x() + after.load[b].force.x());
+            const double py = 0.5 * dt * v.y() * (before.load[b].force.y() + after.load[b].force.y());
+            const double pr = 0.5 * dt * spin * (before.load[b].torque + after.load[b].torque);
+            const double mass = dt * model.blocks.mass[b];
+            if (free.x() != 0.0)
+                w.all += px, w.gravity += mass * v.x() * g.x();
+            else
+                w.driven -= px - mass * v.x() * g.x();
+            if (free.y() != 0.0)
+                w.all += py, w.gravity += mass * v.y() * g.y();
+            else
+                w.driven -= py - mass * v.y() * g.y();
+            if (model.blocks.inv_inertia[b] != 0.0)
+                w.all += pr;
+            else
+                w.driven -= pr;
+            if (!after.damping.empty())
+                w.damping += 0.5 * dt * (v.dot(after.damping[b].force) + spin * after.damping[b].torque);
+            if (!before.damping.empty())
+                w.damping += 0.5 * dt * (v.dot(before.damping[b].force) + spin * before.damping[b].torque);
+        }
+    }
+    double loads = 0.0;
+    const auto add = [&](BlockId b, const Force& f) {
+        if (model.blocks.inv_mass[b].x() != 0.0) loads += 0.5 * dt * motion.velocity[b].x() * f.force.x();
+        if (model.blocks.inv_mass[b].y() != 0.0) loads += 0.5 * dt * motion.velocity[b].y() * f.force.y();
+        if (model.blocks.inv_inertia[b] != 0.0) loads += 0.5 * dt * motion.spin[b] * f.torque;
+    };
+    for (const Load& l : model.loads) {
+        add(l.block, load_at(l, t0, motion.angle[l.block] - dt * motion.spin[l.block]));
+        add(l.block, load_at(l, t1, motion.angle[l.block]));
+    }
+    const double share = state.release.empty() ? 0.0 : release_share(model, t0) + release_share(model, t1);
+    if (share != 0.0)
+        for (int b = 0; b < nb; ++b) add(b, {share * state.release[b].force, share * state.release[b].torque});
+
+    BlockWork sum;
+    for (const BlockWork& w : work) {
+        sum.all += w.all;
+        sum.gravity += w.gravity;
+        sum.damping += w.damping;
+        sum.driven += w.driven;
+        sum.speed = std::max(sum.speed, w.speed);
+    }
+    ledger.gravity += sum.gravity;
+    ledger.loads += loads;
+    ledger.local_damping += sum.damping;
+    ledger.driven += sum.driven;
+    ledger.contact += sum.all - sum.gravity - loads - sum.damping;
+    return sum.speed;
+}
+
+double kinetic_energy_of_ledger(const Model& model, const State& state, double dt) {
+    double energy = 0.0;
+    const auto add = [&](double inverse, double v, double f) {
+        if (inverse != 0.0) energy += 0.5 * v * v / inverse - 0.125 * dt * dt * f * f * inverse;
+    };
+    for (int b = 0; b < model.blocks.size(); ++b) {
+        add(model.blocks.inv_mass[b].x(), state.motion.velocity[b].x(), state.load[b].force.x());
+        add(model.blocks.inv_mass[b].y(), state.motion.velocity[b].y(), state.load[b].force.y());
+        add(model.blocks.inv_inertia[b], state.motion.spin[b], state.load[b].torque);
+    }
+    return energy;
+}
+
+double ledger_error(const Model& model, const State& state, double dt) {
+    const Ledger& l = state.ledger;
+    return kinetic_energy_of_ledger(model, state, dt) - l.kinetic0 - l.gravity - l.loads - l.contact - l.local_damping;
+}
+
+}  // namespace talus

@@ -1,0 +1,50 @@
+// Moving blocks: kick-drift-kick, the two halves of a leapfrog step (velocity Verlet). Second order, symplectic.
+#pragma once
+
+#include "model/model.hpp"
+#include "model/placed.hpp"
+#include "model/state.hpp"
+
+#include <span>
+
+namespace talus {
+
+/// v += F/m x dt along the axes that are free.
+void kick(const Model& model, std::span<const Force> load, Motion& motion, double dt);
+
+/// x += v dt, angle += spin dt.
+void drift(Motion& motion, double dt);
+
+/// Sets the velocities that are prescribed at time t.
+void drive(const Model& model, double t, Motion& motion);
+
+/// Turns corners and normals to the present angles. Blocks that never turn may be placed once: `all` = false skips the held.
+void place(const Model& model, const Motion& motion, bool all, Placed& placed);
+
+/// Share of the forces of deleted neighbours that is still there, 1 at the start of the stage, 0 after model.release_time.
+double release_share(const Model& model, double stage_time);
+
+/// load = weight + loads + what is left of the forces of deleted neighbours, at state.stage_time.
+void external_forces(const Model& model, const State& state, std::span<Force> load);
+
+/// Cundall's local damping, per degree of freedom that is free: damping = -alpha |F| sign(v), added to the load.
+void damp_locally(const Model& model, const Motion& motion, std::span<Force> load, std::vector<Force>& damping);
+
+/// Forces at one end of a step: what the ledger needs to tell the work of each kind apart.
+struct StepEnd {
+    std::span<const Force> load, damping;
+};
+
+/// Adds the work of the step dt that ends at `state` (velocities still those of the half step) to the ledger, with the mean
+/// of the forces at both its ends: exact for kick-drift-kick when the kinetic energy is taken as kinetic_energy_of_ledger
+/// does. Returns the largest speed of any corner, m/s.
+double account(const Model& model, const StepEnd& before, const StepEnd& after, const State& state, double dt,
+               Ledger& ledger);
+
+/// J, (m/2) v(t - dt/2) . v(t + dt/2) summed over the free blocks: changes by exactly the mid-step work.
+double kinetic_energy_of_ledger(const Model& model, const State& state, double dt);
+
+/// J: kinetic energy less the work done since the start of the ledger; zero but for rounding while dt is constant.
+double ledger_error(const Model& model, const State& state, double dt);
+
+}  // namespace talus

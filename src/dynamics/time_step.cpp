@@ -1,0 +1,170 @@
+#include "dynamics/time_step.hpp"
+
+#include "core/errors.hpp"
+
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace talus {
+namespace {
+
+using Matrix3 = Eigen::Matrix3d;
+using Vector3 = Eigen::Vector3d;
+
+// kn and ks that the contacts of each block may have at most.
+struct Stiffness {
+    std::vector<double> kn, ks;  // [nb] Pa/m
+};
+
+Stiffness largest_stiffness(const Model& model) {
+    const int nb = model.blocks.size(), nm = static_cast<int>(model.material_names.size());
+    Stiffness most{std::vector<double>(nb, 0.0), std::vector<double>(nb, 0.0)};
+    const auto raise = [&](BlockId b, int joint) {
+        most.kn[b] = std::max(most.kn[b], model.joints[joint].kn);
+        most.ks[b] = std::max(most.ks[b], model.joints[joint].ks);
+    };
+    std::vector<bool> present(nm, false);
+    for (int m : model.blocks.material) present[m] = true;
+    for (BlockId b = 0; b < nb; ++b)
+        for (int m = 0; m < nm; ++m)
+            if (present[m]) raise(b, model.joint_of_materials[model.blocks.material[b] * nm + m]);
+    for (const auto& [pair, joint] : model.joint_of_blocks) raise(pair.a, joint), raise(pair.b, joint);
+    for (const auto& [pair, joint] : model.joint_of_faces)
+        raise(model.parts.block[pair.a], joint), raise(model.parts.block[pair.b], joint);
+    return most;
+}
+
+// Adds the stiffness of a stretch of length l with middle `arm` and unit tangent t, spread evenly along it.
+void add_face(Matrix3& k, const Vec2& arm, const Vec2& normal, double length, double kn, double ks) {
+    const Vec2 tangent = perp(normal);
+    for (const double at : {-0.5, 0.5}) {  // two Gauss points integrate the quadratic exactly
+        const Vec2 r = arm + tangent * (at * length / std::sqrt(3.0));
+        const Vector3 n(normal.x(), normal.y(), cross(r, normal)), t(tangent.x(), tangent.y(), cross(r, tangent));
+        k += 0.5 * length * (kn * n * n.transpose() + ks * t * t.transpose());
+    }
+}
+
+double largest_eigenvalue(const Matrix3& k, const Vector3& inverse_mass) {
+    const Vector3 root = inverse_mass.cwiseSqrt();
+    const Matrix3 scaled = root.asDiagonal() * k * root.asDiagonal();
+    return Eigen::SelfAdjointEigenSolver<Matrix3>(scaled, Eigen::EigenvaluesOnly).eigenvalues()[2];
+}
+
+Vector3 inverse_mass(const Model& model, BlockId b) {
+    return {model.blocks.inv_mass[b].x(), model.blocks.inv_mass[b].y(), model.blocks.inv_inertia[b]};
+}
+
+// A spring of the power iteration: one Gauss point of one contact.
+struct Spring {
+    BlockId a, b;
+    Vec2 arm_a, arm_b, normal;
+    double kn, ks;
+};
+
+std::vector<Spring> springs_of(const Model& model, const State& state) {
+    std::vector<Spring> springs;
+    for (const Contact& c : state.contacts.list) {
+        if (!c.touching) continue;
+        const BlockId a = model.parts.block[c.part_a], b = model.parts.block[c.part_b];
+        const Vec2 tangent = perp(c.normal);
+        const Joint& joint = model.joints[c.joint];
+        for (const double at : {-0.5, 0.5}) {
+            const Vec2 p = c.point + tangent * (at * c.length / std::sqrt(3.0));
+            springs.push_back({a, b, p - state.motion.position[a], p - state.motion.position[b], c.normal,
+                               0.5 * joint.kn * c.length, 0.5 * joint.ks * c.length});
+        }
+    }
+    return springs;
+}
+
+// Largest omega^2 of the springs. The Rayleigh quotient only rises: it never claims more than there is.
+double power_iteration(const Model& model, const std::vector<Spring>& springs) {
+    const int nb = model.blocks.size();
+    std::vector<Vector3> x(nb), y(nb), root(nb);
+    for (BlockId b = 0; b < nb; ++b) {
+        root[b] = inverse_mass(model, b).cwiseSqrt();
+        const double h = b * 0.6180339887498949;  // a start without symmetry
+        x[b] = Vector3(h - std::floor(h) - 0.31, 0.73 - 2.0 * h + std::floor(2.0 * h), 5.0 * h - std::floor(5.0 * h) - 0.47);
+        for (int i = 0; i < 3; ++i)
+            if (root[b][i] == 0.0) x[b][i] = 0.0;
+    }
+    double quotient = 0.0;
+    for (int iteration = 0; iteration < 300; ++iteration) {
+        double size = 0.0;
+        for (const Vector3& v : x) size += v.squaredNorm();
+        if (size == 0.0) return 0.0;
+        for (Vector3& v : x) v /= std::sqrt(size);
+        std::fill(y.begin(), y.end(), Vector3::Zero());
+        for (const Spring& s : springs) {
+            const Vector3 ua = root[s.a].cwiseProduct(x[s.a]), ub = root[s.b].cwiseProduct(x[s.b]);
+            const Vec2 d = Vec2(ub.x(), ub.y()) + ub.z() * perp(s.arm_b) - Vec2(ua.x(), ua.y()) - ua.z() * perp(s.arm_a);
+            const Vec2 tangent = perp(s.normal);
+            const Vec2 f = s.kn * d.dot(s.normal) * s.normal + s.ks * d.dot(tangent) * tangent;
+            y[s.b] += root[s.b].cwiseProduct(Vector3(f.x(), f.y(), cross(s.arm_b, f)));
+            y[s.a] -= root[s.a].cwiseProduct(Vector3(f.x(), f.y(), cross(s.arm_a, f)));
+        }
+        double next = 0.0;
+        for (int b = 0; b < nb; ++b) next += x[b].dot(y[b]);
+        const bool settled = std::abs(next - quotient) <= 1e-7 * next && iteration > 20;
+        quotient = next;
+        if (settled) break;
+        std::swap(x, y);
+    }
+    return quotient;
+}
+
+}  // namespace
+
+double damped_limit(double omega, double beta) {
+    if (omega <= 0.0) return std::numeric_limits<double>::infinity();
+    const double xi = 0.5 * beta * omega;
+    return 2.0 / omega * (std::sqrt(1.0 + xi * xi) - xi);
+}
+
+StableStep stable_step(const Model& model, const Placed& placed, const State& state) {
+    const Stiffness most = largest_stiffness(model);
+    StableStep step;
+    step.thinnest = std::numeric_limits<double>::infinity();
+    double bound = 0.0, alone = 0.0;
+    for (BlockId b = 0; b < model.blocks.size(); ++b) {
+        if (state.removed[b]) continue;
+        for (PartId p = model.blocks.first_part[b]; p < model.blocks.first_part[b + 1]; ++p)
+            step.thinnest = std::min(step.thinnest, model.parts.thickness[p]);
+        const Vector3 free = inverse_mass(model, b);
+        if (free.isZero()) continue;
+        Matrix3 whole = Matrix3::Zero(), longest = Matrix3::Zero();
+        double length = 0.0;
+        for (PartId p = model.blocks.first_part[b]; p < model.blocks.first_part[b + 1]; ++p) {
+            const int begin = model.parts.first_corner[p], end = model.parts.first_corner[p + 1];
+            for (int k = begin; k < end; ++k) {
+                if (model.corners.internal[k]) continue;
+                const Vec2 middle = 0.5 * (placed.arm[k] + placed.arm[k + 1 == end ? begin : k + 1]);
+                add_face(whole, middle, placed.normal[k], model.corners.length[k], most.kn[b], most.ks[b]);
+                if (model.corners.length[k] <= length) continue;
+                length = model.corners.length[k];
+                longest.setZero();
+                add_face(longest, middle, placed.normal[k], length, most.kn[b], most.ks[b]);
+            }
+        }
+        const double here = 2.0 * largest_eigenvalue(whole, free);
+        if (here > bound) bound = here, step.block = b;
+        alone = std::max(alone, largest_eigenvalue(longest, free));
+    }
+    const double found = power_iteration(model, springs_of(model, state));
+    step.bound = damped_limit(std::sqrt(bound), model.contact_damping);
+    step.estimate = std::max(damped_limit(std::sqrt(std::max(alone, found)), model.contact_damping), step.bound);
+    return step;
+}
+
+int step_halvings(double stage_step, int halvings_now, double speed, double thinnest) {
+    int halvings = halvings_now;
+    while (speed * std::ldexp(stage_step, -halvings) > 0.25 * thinnest)
+        if (++halvings > 40) throw DivergenceError("a block moves at " + std::to_string(speed) + " m/s");
+    while (halvings > 0 && speed * std::ldexp(stage_step, -(halvings - 1)) < 0.1 * thinnest) --halvings;
+    return halvings;
+}
+
+}  // namespace talus

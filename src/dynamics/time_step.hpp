@@ -1,0 +1,31 @@
+// How large a step may be: a rigorous bound, an estimate of the true limit, and a guard against passing through things.
+#pragma once
+
+#include "model/model.hpp"
+#include "model/placed.hpp"
+#include "model/state.hpp"
+
+namespace talus {
+
+struct StableStep {
+    double bound = 0.0;     // s, never above the true limit of the linear system
+    double estimate = 0.0;  // s, of the true limit, from power iterations on the contacts there are
+    BlockId block = -1;     // that governs the bound
+    double thinnest = 0.0;  // m, smallest width of any part that takes part in motion
+};
+
+/// Bound: two blocks joined by a spring store k |d_i - d_j|^2 / 2 <= k (|d_i|^2 + |d_j|^2), so the stiffness matrix is below
+/// twice its block diagonal and omega_max^2 <= 2 max_i lambda_max(M_i^-1 K_ii). K_ii is that of block i with its whole
+/// boundary pressed against fixed neighbours: it depends on the model alone, neither on the contact list nor on the state.
+/// Estimate: largest Rayleigh quotient found by power iteration on the contacts that carry force, and of each free block
+/// alone on its longest face. Both are shortened for contact damping: 2/omega (sqrt(1 + xi^2) - xi), xi = beta omega / 2.
+StableStep stable_step(const Model& model, const Placed& placed, const State& state);
+
+/// 2/omega for contact damping beta (s).
+double damped_limit(double omega, double beta);
+
+/// How often the step must be halved so that nothing moves further than a quarter of the thinnest part in one step; with
+/// hysteresis, so that it does not change to and fro. Throws DivergenceError beyond 40 halvings.
+int step_halvings(double stage_step, int halvings_now, double speed, double thinnest);
+
+}  // namespace talus

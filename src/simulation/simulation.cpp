@@ -1,0 +1,295 @@
+#include "simulation/simulation.hpp"
+
+#include "core/errors.hpp"
+#include "dynamics/motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace talus {
+namespace {
+
+constexpr int calm_interval = 10;  // steps between looks at the unbalanced ratio
+constexpr int calm_needed = 3;     // looks in a row below the limit: one may be a turning point of the motion
+
+StageSpec last_stage(const Scenario& scenario) {
+    StageSpec stage;
+    stage.name = "run";
+    stage.until = scenario.run.until;
+    stage.damping = scenario.run.damping;
+    stage.time_step = scenario.run.time_step;
+    return stage;
+}
+
+// m: boxes a twentieth of a block larger than it is are left every few hundred steps in a fast slope, and hold hardly more
+// pairs (0-4 %); half of it doubles the refreshes, twice of it adds pairs.
+double default_skin(const Model& model) {
+    std::vector<double> area = model.blocks.area;
+    if (area.empty()) return 0.0;
+    const auto middle = area.begin() + static_cast<std::ptrdiff_t>(area.size() / 2);
+    std::nth_element(area.begin(), middle, area.end());
+    return 0.05 * std::sqrt(*middle);
+}
+
+VectorTable frozen(const VectorTable& table) { return {table.x.frozen(), table.y.frozen()}; }
+
+std::vector<StageSpec> stages_of(const Scenario& scenario) {
+    std::vector<StageSpec> stages = scenario.stages;
+    if (scenario.run.until.time || scenario.run.until.equilibrium || stages.empty()) stages.push_back(last_stage(scenario));
+    return stages;
+}
+
+}  // namespace
+
+Simulation::Simulation(const Scenario& scenario, Scene scene)
+    : scenario_(scenario),
+      stages_(stages_of(scenario)),
+      model_(std::move(scene.model)),
+      state_(std::move(scene.state)),
+      report_(std::move(scene.report)),
+      driven_(std::exchange(model_.driven, {})),
+      search_(make_search(scenario.run.search)),
+      skin_(scenario.run.skin.value_or(default_skin(model_))) {
+    boundary_loads_.assign(model_.loads.begin(), model_.loads.begin() + model_.boundary_loads);
+    model_.face_path = scenario.run.face_path;
+}
+
+Simulation::Simulation(const Scenario& scenario, Scene scene, State saved) : Simulation(scenario, std::move(scene)) {
+    state_ = std::move(saved);
+    apply_stage();
+    place(model_, state_.motion, true, placed_);
+    stable_ = stable_step(model_, placed_, state_);
+}
+
+// ---- one step -------------------------------------------------------------------------------------------------------
+
+void Simulation::step() {
+    const double dt = time_step();
+    watch_.lap();
+    load_before_ = state_.load;
+    damping_before_ = state_.damping;
+    kick(model_, state_.load, state_.motion, dt / 2);                     // v(t) -> v(t + dt/2)
+    drive(model_, state_.stage_time + dt / 2, state_.motion);
+    drift(state_.motion, dt);                                             // x(t) -> x(t + dt)
+    state_.time += dt;
+    state_.stage_time += dt;
+    lap(Part::move);
+    update_forces(dt);
+    speed_ = account(model_, {load_before_, damping_before_}, {state_.load, state_.damping}, state_, dt, state_.ledger);
+    lap(Part::account);
+    kick(model_, state_.load, state_.motion, dt / 2);                     // v(t + dt/2) -> v(t + dt)
+    drive(model_, state_.stage_time, state_.motion);
+    ++state_.step;
+    ++state_.total_steps;
+    state_.step_halvings = step_halvings(state_.stage_step, state_.step_halvings, speed_, stable_.thinnest);
+    lap(Part::move);
+}
+
+void Simulation::update_forces(double dt) {                               // dt = 0 once at the start: no slip
+    place(model_, state_.motion, boxed_position_.empty(), placed_);       lap(Part::place);
+    if (left_boxes()) refresh();                                          lap(Part::search);
+    update_contacts(model_, placed_, dt, state_, incidence_);             lap(Part::contacts);
+    external_forces(model_, state_, state_.load);
+    sum_contacts(model_, state_.contacts, incidence_, state_.load);
+    if (model_.local_damping > 0.0) damp_locally(model_, state_.motion, state_.load, state_.damping);
+    lap(Part::sum);
+}
+
+double Simulation::time_step() const {
+    const double dt = std::ldexp(state_.stage_step, -state_.step_halvings);
+    if (!stage().until.time) return dt;
+    const double left = *stage().until.time - state_.stage_time;
+    return left < dt * (1.0 + 1e-9) ? left : dt;
+}
+
+// ---- pairs ----------------------------------------------------------------------------------------------------------
+
+bool Simulation::left_boxes() const {
+    const int nb = model_.blocks.size();
+    if (static_cast<int>(boxed_position_.size()) != nb) return true;
+    double farthest = 0.0;
+#pragma omp parallel for schedule(static) reduction(max : farthest)
+    for (int b = 0; b < nb; ++b) {
+        const Vec2 moved = (state_.motion.position[b] - boxed_position_[b]).cwiseAbs();
+        const double turned = std::abs(state_.motion.angle[b] - boxed_angle_[b]) * model_.blocks.radius[b];
+        farthest = std::max(farthest, std::max(moved.x(), moved.y()) + turned);
+    }
+    return !(farthest <= skin_);
+}
+
+void Simulation::refresh() {
+    const int np = model_.parts.size();
+    boxes_.resize(np);
+    for (PartId p = 0; p < np; ++p) {
+        const BlockId block = model_.parts.block[p];
+        Box box{1.0, 1.0, -1.0, -1.0};  // absent
+        if (!state_.removed[block]) {
+            const Vec2& at = state_.motion.position[block];
+            Vec2 low = placed_.arm[model_.parts.first_corner[p]], high = low;
+            for (int k = model_.parts.first_corner[p] + 1; k < model_.parts.first_corner[p + 1]; ++k) {
+                low = low.cwiseMin(placed_.arm[k]);
+                high = high.cwiseMax(placed_.arm[k]);
+            }
+            box = Box{low.x() + at.x(), low.y() + at.y(), high.x() + at.x(), high.y() + at.y()}.grown(skin_);
+        }
+        boxes_[p] = box;
+    }
+    search_->find(boxes_, pairs_);
+    refresh_contacts(model_, pairs_, state_, incidence_);
+    boxed_position_ = state_.motion.position;
+    boxed_angle_ = state_.motion.angle;
+    ++refreshes_;
+}
+
+void Simulation::drop_scratch() {
+    placed_ = {};
+    search_ = make_search(scenario_.run.search);
+    pairs_.clear();
+    boxed_position_.clear();
+    boxed_angle_.clear();
+}
+
+// ---- stages ---------------------------------------------------------------------------------------------------------
+
+void Simulation::apply_stage() {
+    const bool last = state_.stage + 1 == stage_count();
+    for (int i = 0; i <= state_.stage; ++i)
+        for (const JointSpec& joint : stages_[i].joints)
+            for (Joint& mine : model_.joints)
+                if (mine.name == joint.name) mine = make_joint(joint);
+    model_.local_damping = stage().damping.local;
+    model_.contact_damping = stage().damping.contact;
+    model_.release_time = stage().release;
+
+    // Tables of the scene run with the last stage; before it they stand still at their first value.
+    const VectorTable gravity = stage().gravity ? *stage().gravity : last ? scenario_.gravity : frozen(scenario_.gravity);
+    const VectorTable shaking = last ? scenario_.body_acceleration : frozen(scenario_.body_acceleration);
+    model_.gravity_x = gravity.x + shaking.x;
+    model_.gravity_y = gravity.y + shaking.y;
+    model_.loads = boundary_loads_;
+    for (Load load : make_loads(model_, state_, stage().loads_given ? stage().loads : scenario_.loads)) {
+        if (!last && !stage().loads_given)
+            load = {load.block, load.arm, load.force_x.frozen(), load.force_y.frozen(), load.moment.frozen()};
+        model_.loads.push_back(load);
+    }
+    for (BlockId b = 0; b < model_.blocks.size(); ++b) {
+        if (!state_.removed[b]) continue;
+        model_.blocks.inv_mass[b].setZero();
+        model_.blocks.inv_inertia[b] = 0.0;
+    }
+    model_.driven = driven_;
+    if (!last)
+        for (DrivenBlock& d : model_.driven) d.velocity_x = d.velocity_y = d.spin = TimeTable{};
+}
+
+void Simulation::delete_blocks() {
+    std::vector<BlockId> gone;
+    for (const Selector& selector : stage().remove)
+        for (BlockId b : select(model_, state_, selector)) gone.push_back(b);
+    for (BlockId b : gone) state_.removed[b] = 1;
+    if (stage().release > 0.0) state_.release.assign(model_.blocks.size(), Force{});
+    for (std::size_t i = 0; i < state_.contacts.list.size() && !state_.release.empty(); ++i) {
+        const Contact& c = state_.contacts.list[i];
+        const BlockId a = model_.parts.block[c.part_a], b = model_.parts.block[c.part_b];
+        if (!c.touching || state_.removed[a] == state_.removed[b]) continue;
+        const BlockId stays = state_.removed[a] ? b : a;
+        const Force& f = state_.removed[a] ? state_.contacts.on_b[i] : state_.contacts.on_a[i];
+        state_.release[stays].force += f.force;
+        state_.release[stays].torque += f.torque;
+    }
+    for (BlockId b : gone) {
+        state_.motion.velocity[b].setZero();
+        state_.motion.spin[b] = 0.0;
+    }
+    boxed_position_.clear();
+}
+
+void Simulation::begin_stage() {
+    state_.stage_time = 0.0;
+    state_.step_halvings = 0;
+    state_.damping.clear();
+    state_.release.clear();
+    calm_checks_ = 0;
+    equilibrium_ = false;
+    apply_stage();
+    if (!stage().remove.empty()) {
+        update_forces(0.0);
+        delete_blocks();
+        apply_stage();
+    }
+    drive(model_, 0.0, state_.motion);
+    update_forces(0.0);
+
+    stable_ = stable_step(model_, placed_, state_);
+    const StageSpec& now = stage();
+    if (now.time_step) {
+        if (*now.time_step > stable_.estimate && !scenario_.run.unchecked)
+            throw InputError({Fault{{scenario_.file, 0},
+                                    now.name + ".time_step",
+                                    "is above the stable step, estimated at " + std::to_string(stable_.estimate) +
+                                        " s (rigorous bound " + std::to_string(stable_.bound) +
+                                        " s); leave it out, or set run.unchecked: true to see what happens"}});
+        state_.stage_step = *now.time_step;
+    } else {
+        double dt = scenario_.run.step_fraction * stable_.bound;
+        // A whole number of steps, so that none has to be cut at the end.
+        if (!std::isfinite(dt)) dt = now.until.time.value_or(1.0) / 1000;  // nothing that could move is stiff
+        if (now.until.time) dt = *now.until.time / std::ceil(*now.until.time / dt);
+        state_.stage_step = dt;
+    }
+    state_.ledger.kinetic0 += talus::ledger_error(model_, state_, state_.stage_step);
+}
+
+bool Simulation::end_stage() {
+    if (stage().reset) {
+        const int nb = model_.blocks.size();
+        for (BlockId b = 0; b < nb; ++b) {
+            if (model_.blocks.held(b)) continue;
+            state_.motion.velocity[b].setZero();
+            state_.motion.spin[b] = 0.0;
+        }
+        state_.start_position = state_.motion.position;
+        state_.start_angle = state_.motion.angle;
+        state_.time = 0.0;
+        state_.step = 0;
+        state_.ledger = Ledger{};
+        for (Contact& c : state_.contacts.list)
+            if (c.dilation == 0.0) c.slip = c.slip_sum = 0.0;
+    }
+    if (state_.stage + 1 == stage_count()) return false;
+    ++state_.stage;
+    return true;
+}
+
+bool Simulation::stage_over() {
+    const Until& until = stage().until;
+    if (until.time && state_.stage_time >= *until.time * (1.0 - 1e-12)) return true;
+    if (!until.equilibrium || state_.step % calm_interval != 0 || state_.stage_time == 0.0) return false;
+    calm_checks_ = unbalanced_ratio(model_, state_) < *until.equilibrium ? calm_checks_ + 1 : 0;
+    equilibrium_ = calm_checks_ >= calm_needed;
+    return equilibrium_;
+}
+
+// ---- numbers --------------------------------------------------------------------------------------------------------
+
+Energies Simulation::energies() const {
+    const StrainEnergy strain = strain_energy(model_, placed_, state_);
+    const Ledger& l = state_.ledger;
+    Energies e;
+    e.kinetic = kinetic_energy(model_, state_);
+    e.strain_normal = strain.normal;
+    e.strain_shear = strain.shear;
+    e.friction = l.friction;
+    e.contact_damping = l.contact_damping;
+    e.local_damping = -l.local_damping;
+    e.released = l.released;
+    e.gravity = l.gravity;
+    e.loads = l.loads;
+    e.driven = l.driven;
+    return e;
+}
+
+double Simulation::ledger_error() const { return talus::ledger_error(model_, state_, state_.stage_step); }
+
+}  // namespace talus

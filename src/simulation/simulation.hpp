@@ -1,0 +1,92 @@
+// The order of things: one step, one stage after the other. Owns Model, State and Scratch.
+#pragma once
+
+#include "contact/contacts.hpp"
+#include "contact/search.hpp"
+#include "core/stopwatch.hpp"
+#include "dynamics/time_step.hpp"
+#include "model/build.hpp"
+#include "model/measure.hpp"
+#include "model/placed.hpp"
+
+#include <array>
+#include <memory>
+#include <string>
+
+namespace talus {
+
+enum class Part { move, place, search, contacts, sum, account };  // of a step, for the timing
+inline constexpr std::array<const char*, 6> part_names{"move", "place", "search", "contacts", "sum", "account"};
+
+class Simulation {
+public:
+    /// A scene at its very start.
+    Simulation(const Scenario& scenario, Scene scene);
+    /// Goes on from a saved state of the same scenario, bit for bit.
+    Simulation(const Scenario& scenario, Scene scene, State saved);
+
+    /// Prepares stage `state().stage`: deletes blocks, changes properties, chooses the step. Called by run() at the start of
+    /// every stage, not after a restart in its middle. Throws InputError if the user's time step is above the stable
+    /// estimate.
+    void begin_stage();
+    /// Resets what the stage asks for and moves on; false if it was the last one.
+    bool end_stage();
+
+    void step();        // one time step; the last one of a timed stage is cut to end exactly
+    bool stage_over();  // by time, or by equilibrium (looked at every 10 steps)
+
+    const Scenario& scenario() const { return scenario_; }
+    const Model& model() const { return model_; }
+    const State& state() const { return state_; }
+    const StageSpec& stage() const { return stages_[state_.stage]; }
+    int stage_count() const { return static_cast<int>(stages_.size()); }
+    const StableStep& stable() const { return stable_; }
+    const BuildReport& report() const { return report_; }
+    double skin() const { return skin_; }
+    double time_step() const;  // s, of the next step (before the cut at the end)
+    bool reached_equilibrium() const { return equilibrium_; }
+    Energies energies() const;
+    double ledger_error() const;                           // J
+    double max_speed() const { return speed_; }            // m/s, in the last step
+    std::int64_t refreshes() const { return refreshes_; }  // how often the list of pairs was made anew
+    const std::array<double, part_names.size()>& seconds() const { return seconds_; }
+
+    /// Throws away everything that is not State; what follows is the same. For tests.
+    void drop_scratch();
+
+private:
+    void apply_stage();  // what a stage changes in the model; idempotent
+    void delete_blocks();
+    void update_forces(double dt);
+    bool left_boxes() const;
+    void refresh();
+    void lap(Part part) { seconds_[static_cast<int>(part)] += watch_.lap(); }
+
+    const Scenario scenario_;
+    std::vector<StageSpec> stages_;  // those of the scenario and, last, `run`
+    Model model_;
+    State state_;
+    BuildReport report_;
+    std::vector<Load> boundary_loads_;  // of initial stress: always there
+    std::vector<DrivenBlock> driven_;   // act in the last stage only
+
+    Placed placed_;  // Scratch from here on
+    std::unique_ptr<PairSearch> search_;
+    std::vector<Pair> pairs_;
+    Incidence incidence_;
+    std::vector<Box> boxes_;
+    std::vector<Vec2> boxed_position_;  // [nb] where blocks were when the boxes were made; empty = no list yet
+    std::vector<double> boxed_angle_;
+    std::vector<Force> load_before_, damping_before_;
+    double skin_ = 0.0;
+
+    StableStep stable_;
+    bool equilibrium_ = false;
+    int calm_checks_ = 0;
+    double speed_ = 0.0;
+    std::int64_t refreshes_ = 0;
+    std::array<double, part_names.size()> seconds_{};
+    Stopwatch watch_;
+};
+
+}  // namespace talus
