@@ -13,7 +13,7 @@ namespace talus {
 
 struct BuildReport {                       // what `talus check` tells
     CutReport cut;
-    int trace_count = 0, tips_extended = 0;
+    int trace_count = 0, tips_extended = 0, corners_snapped = 0;
     std::vector<std::string> warnings;
     std::vector<int> faces_per_joint;      // [nj] touching part pairs by the joint they got, in the order of Model::joints
 };
@@ -29,6 +29,10 @@ Scene build(const Scenario& scenario);
 
 /// Blocks meant by a selector, ascending; throws InputError if there is none.
 std::vector<BlockId> select(const Model& model, const State& state, const Selector& selector);
+
+/// Loads on the selected blocks, each block with the whole force; throws InputError if a selector fits nothing. They go
+/// behind the first Model::boundary_loads of Model::loads.
+std::vector<Load> make_loads(const Model& model, const State& state, const std::vector<LoadSpec>& specs);
 
 /// Joint properties ready for the law.
 Joint make_joint(const JointSpec& spec);

@@ -19,10 +19,12 @@ struct Energies {
     }
 };
 
+/// Of the axes that are neither held nor driven, J.
 double kinetic_energy(const Model& model, const State& state);
 
-/// max |out-of-balance force| over free blocks / mean over blocks of the sum of contact force magnitudes (or of the weights,
-/// whichever is larger); torques count divided by the radius of gyration. Dimensionless; 0 in equilibrium.
+/// max |out-of-balance force| over blocks that can move / mean over the same blocks of the sum of contact force magnitudes (or
+/// of the weights, whichever is larger); torques count divided by the radius of gyration, held and driven axes not at all.
+/// Dimensionless; 0 in equilibrium, infinite if nothing but an applied load acts.
 double unbalanced_ratio(const Model& model, const State& state);
 
 /// Displacement since the start (or the last reset) of the point of block b that was at `start_point` (m) then.

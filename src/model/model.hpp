@@ -97,6 +97,7 @@ struct Model {
     std::vector<JointFace> faces;          // [nf]
     std::vector<DrivenBlock> driven;
     std::vector<Load> loads;
+    int boundary_loads = 0;                // the first so many loads carry the in-situ stress on free sides; stages keep them
     TimeTable gravity_x, gravity_y;        // m/s2, gravity and body acceleration together
     double local_damping = 0.0;            // Cundall's alpha
     double contact_damping = 0.0;          // s

@@ -75,6 +75,7 @@ struct CrackSpec {  // one given polyline
 
 struct TraceMapSpec {  // mapped traces from a GeoJSON or CSV file
     std::string file;               // relative to the scenario file
+    std::vector<std::vector<Vec2>> lines;  // m, the polylines read from it
     double extend = 0.0;            // m, added at both tips of every trace
     double snap = 0.0;              // m, corners closer than this become one
     std::string joint;
@@ -153,7 +154,7 @@ struct LoadSpec {
 struct InitialStressSpec {
     // in-situ field: vertical stress surcharge + unit weight x (surface - y), horizontal = k0 x vertical
     std::optional<double> k0;
-    double surface = 0.0;                    // m, y where the vertical stress equals the surcharge; default: top of the rock
+    std::optional<double> surface;           // m, y where the vertical stress equals the surcharge; default: top of the rock
     double surcharge = 0.0;                  // Pa
     std::optional<double> unit_weight;       // N/m3; default: density of the rock x |gravity|
     // or a given field: stress at the origin of the scene and its increase with x and y

@@ -1,0 +1,50 @@
+#include "model/hash.hpp"
+
+#include <bit>
+
+namespace talus {
+namespace {
+
+// FNV-1a, 64 bits, byte by byte, lowest first [Fowler, Noll & Vo].
+class Hash {
+public:
+    Hash& operator<<(std::uint64_t bits) {
+        for (int byte = 0; byte < 8; ++byte) {
+            value_ ^= (bits >> (8 * byte)) & 0xffU;
+            value_ *= 0x100000001b3ULL;
+        }
+        return *this;
+    }
+    Hash& operator<<(double x) { return *this << std::bit_cast<std::uint64_t>(x + 0.0); }  // -0.0 + 0.0 is 0.0
+    Hash& operator<<(const Vec2& v) { return *this << v.x() << v.y(); }
+    Hash& operator<<(int i) { return *this << static_cast<std::uint64_t>(static_cast<std::int64_t>(i)); }
+    std::uint64_t value() const { return value_; }
+
+private:
+    std::uint64_t value_ = 0xcbf29ce484222325ULL;
+};
+
+void add(Hash& hash, const Contact& contact) {
+    hash << contact.part_a << contact.part_b << contact.joint << contact.face << contact.edge_a << contact.edge_b;
+    hash << static_cast<int>(contact.touching) << static_cast<int>(contact.slipped) << static_cast<int>(contact.sliding);
+    hash << contact.length << contact.normal_force << contact.shear_force;
+    hash << contact.slip << contact.slip_sum << contact.dilation;
+}
+
+}  // namespace
+
+std::uint64_t state_hash(const Model& model, const State& state) {
+    Hash hash;
+    hash << state.time << static_cast<std::uint64_t>(state.step);
+    for (BlockId b = 0; b < model.blocks.size(); ++b) {
+        hash << static_cast<int>(state.removed[b]);
+        if (state.removed[b]) continue;  // what a deleted block does, nobody sees
+        hash << state.motion.position[b] << state.motion.angle[b] << state.motion.velocity[b] << state.motion.spin[b];
+    }
+    for (const Contact& contact : state.contacts.list)
+        if (contact.alive) add(hash, contact);
+    for (const std::uint8_t cell : state.contacts.broken) hash << static_cast<int>(cell);
+    return hash.value();
+}
+
+}  // namespace talus
