@@ -33,11 +33,12 @@ private:
                y_.repair(boxes, budget, [&](int i, int j) { put_down(x_, boxes, i, j); });
     }
 
-    /// Merges the touched pairs into the sorted list: each is in it afterwards if it overlaps now, and out if not.
+    /// Merges the touched pairs into the sorted list: each is in it afterwards if it overlaps now, and out if not. None
+    /// enters twice: a pair that overlaps now and did not before was apart along y, or along x only, and was put down there,
+    /// once; twice in the buffer are only pairs that jumped past each other.
     void update(std::span<const Box> boxes) {
         if (touched_.empty()) return;
         std::sort(touched_.begin(), touched_.end());
-        touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
         merged_.clear();
         auto rest = pairs_.cbegin();
         for (const Pair& pair : touched_) {
