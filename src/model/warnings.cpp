@@ -51,7 +51,7 @@ std::vector<std::string> warnings(const Scenario& scenario, const Model& model, 
         else if ((joint.tension > 0.0 || joint.cohesion > 0.0) && faces_per_joint[j] == 0)
             all.push_back("joint `" + joint.name + "` has strength to bond blocks, but none touch along it at the start");
     }
-    if (!something_holds(model) && scenario.gravity(0.0).norm() > 0.0)
+    if (!something_holds(model) && model.boundary_loads == 0 && scenario.gravity(0.0).norm() > 0.0)
         all.push_back("no block is held or driven: under gravity the whole scene falls");
     if (model.blocks.size() > 1)
         if (const auto loose = loose_blocks(model, neighbours); !loose.empty())
