@@ -1,0 +1,41 @@
+// One observed number: what a history records and what an expectation judges.
+#pragma once
+
+#include "model/measure.hpp"
+#include "model/model.hpp"
+#include "model/state.hpp"
+#include "scenario/scenario.hpp"
+
+#include <functional>
+#include <string>
+
+namespace talus {
+
+/// What a probe reads besides model and state; the run fills in what `Probe::needs_energies` and the names ask for.
+struct Gauges {
+    Energies energies;
+    double time_step = 0.0, stable_step = 0.0;  // s, in use; estimate of the largest stable one
+};
+
+/// Found once at the start and read at any step after; it follows its block or its joint, not its place.
+struct Probe {
+    std::string name;  // "displacement.x at (30, 15)", in the user's coordinates
+    std::string unit;  // SI, "1" for plain numbers
+    bool needs_energies = false;
+    std::function<double(const Model&, const State&, const Gauges&)> read;
+};
+
+/// Throws InputError for a quantity or component that does not exist, or a place or block that fits nothing.
+///
+/// displacement, velocity, position, rotation, spin: of the material point, or of the centroid of the named block.
+/// normal_force, shear_force, normal_stress, max_normal_stress, shear_stress, contact_length, utilisation, slip, opening,
+/// shear_displacement: of the joint between the two parts nearest to the place. The first block is the one with the lower
+/// number; shear is positive when it pushes the second block to the left of the normal from first to second, shear
+/// displacement when the second block has moved that way. A joint that is open carries nothing.
+/// reaction, moment: sum of the contact forces on the block, and of their torques about its centroid.
+/// max_displacement, relative_displacement without a place: of free blocks, over their size (square root of the area).
+/// energy, energy_drift, momentum, angular_momentum (about the origin of the file), unbalanced, max_speed, time_step,
+/// stable_step: of the whole scene.
+Probe make_probe(const ProbeSpec& spec, const Model& model, const State& state);
+
+}  // namespace talus

@@ -1,0 +1,93 @@
+#include "simulation/expect.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+namespace talus {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+double lowest(const Signal& s) { return s.value.empty() ? std::nan("") : *std::min_element(s.value.begin(), s.value.end()); }
+
+double highest(const Signal& s) {
+    return s.value.empty() ? std::nan("") : *std::max_element(s.value.begin(), s.value.end());
+}
+
+double measure(const ExpectSpec& e, const Signal& whole, const Signal& whole_against) {
+    const double first = e.between ? e.between->first : -infinity, last = e.between ? e.between->second : infinity;
+    if (e.measure == "value") return e.at ? value_at(whole, *e.at) : whole.value.empty() ? std::nan("") : whole.value.back();
+    if (e.measure == "rate") return mean_rate(whole, first, last);
+    if (e.between && std::isnan(value_at(whole, last))) return std::nan("");  // a maximum of half the window proves nothing
+    const Signal part = between(whole, first, last);
+    if (e.measure == "max") return highest(part);
+    if (e.measure == "min") return lowest(part);
+    if (e.measure == "frequency") return frequency(part);
+    if (e.measure == "decrement") return decrement(part);
+    return loop_area(between(whole_against, first, last), part);
+}
+
+std::string description(const ExpectSpec& e, const std::string& name) {
+    std::ostringstream text;
+    text << name;
+    if (e.measure != "value") text << ", " << e.measure;
+    if (e.at) text << " at " << *e.at << " s";
+    if (e.between) text << ' ' << e.between->first << ".." << e.between->second << " s";
+    return text.str();
+}
+
+}  // namespace
+
+Verdict judge(const ExpectSpec& e, const std::string& name, const Signal& observed, const Signal& against) {
+    Verdict v{description(e, name), measure(e, observed, against), 0.0, 0.0, 0.0, false};
+    if (e.value) {
+        v.expected = *e.value;
+        v.error = std::abs(v.measured - v.expected);
+        v.allowed = std::max(e.tolerance.value_or(0.0) * std::abs(v.expected), e.tolerance_absolute.value_or(0.0));
+    } else {
+        const double short_of = e.above.value_or(-infinity) - v.measured, beyond = v.measured - e.below.value_or(infinity);
+        v.expected = short_of > beyond ? *e.above : e.below.value_or(0.0);
+        v.error = std::isnan(v.measured) ? v.measured : std::max({0.0, short_of, beyond});
+    }
+    v.passed = v.error <= v.allowed;  // false for NaN
+    return v;
+}
+
+Watch::Watch(const std::vector<ExpectSpec>& expects, const Model& model, const State& state) {
+    for (const ExpectSpec& e : expects) {
+        Watched w{e, {make_probe(e.probe, model, state)}, {}};
+        if (e.against) w.probes.push_back(make_probe(*e.against, model, state));
+        w.signals.resize(w.probes.size());
+        watched_.push_back(std::move(w));
+    }
+}
+
+bool Watch::needs_energies() const {
+    return std::any_of(watched_.begin(), watched_.end(), [](const Watched& w) {
+        return std::any_of(w.probes.begin(), w.probes.end(), [](const Probe& p) { return p.needs_energies; });
+    });
+}
+
+void Watch::record(const Model& model, const State& state, const Gauges& gauges) {
+    const bool reset = state.time < last_time_;
+    last_time_ = state.time;
+    for (Watched& w : watched_) {
+        for (std::size_t i = 0; i < w.probes.size(); ++i) {
+            if (reset) w.signals[i] = {};
+            w.signals[i].time.push_back(state.time);
+            w.signals[i].value.push_back(w.probes[i].read(model, state, gauges));
+        }
+    }
+}
+
+std::vector<Verdict> Watch::judge() const {
+    std::vector<Verdict> verdicts;
+    for (const Watched& w : watched_)
+        verdicts.push_back(
+            talus::judge(w.expect, w.probes[0].name, w.signals[0], w.signals.size() > 1 ? w.signals[1] : Signal{}));
+    return verdicts;
+}
+
+}  // namespace talus
