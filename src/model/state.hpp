@@ -53,6 +53,7 @@ struct Contacts {
 
 /// Energies and work since the last reset, J. Work is that done on the blocks.
 struct Ledger {
+    double total0 = 0.0;                   // Energies::total() at the start of the ledger
     double kinetic0 = 0.0;                 // at the start of the ledger (product form, see dynamics/energy.hpp)
     double gravity = 0.0, loads = 0.0, contact = 0.0, local_damping = 0.0, driven = 0.0;  // work done on free blocks
     double friction = 0.0;                 // dissipated by slip, >= 0
@@ -63,6 +64,7 @@ struct Ledger {
 struct State {
     double time = 0.0;                     // s, since the last reset
     double stage_time = 0.0;               // s, since the stage began
+    int calm_checks = 0;                   // looks in a row at which the unbalanced ratio was below its limit
     std::int64_t step = 0;                 // since the last reset
     std::int64_t total_steps = 0;
     int stage = 0;                         // index into the list of stages; the last one is `run`

@@ -51,6 +51,7 @@ Simulation::Simulation(const Scenario& scenario, Scene scene)
       stages_(stages_of(scenario)),
       model_(std::move(scene.model)),
       state_(std::move(scene.state)),
+      first_(state_),
       report_(std::move(scene.report)),
       driven_(std::exchange(model_.driven, {})),
       search_(make_search(scenario.run.search)),
@@ -59,7 +60,8 @@ Simulation::Simulation(const Scenario& scenario, Scene scene)
     omp_set_num_threads(scenario.run.threads);
 #endif
     boundary_loads_.assign(model_.loads.begin(), model_.loads.begin() + model_.boundary_loads);
-    model_.face_path = scenario.run.face_path;
+    for (int i = 0; i < stage_count(); ++i)
+        if (stages_[i].reset) first_recorded_ = std::min(i + 1, stage_count() - 1);
 }
 
 Simulation::Simulation(const Scenario& scenario, Scene scene, State saved) : Simulation(scenario, std::move(scene)) {
@@ -89,6 +91,8 @@ void Simulation::step() {
     drive(model_, state_.stage_time, state_.motion);
     ++state_.step;
     ++state_.total_steps;
+    ++steps_done_;
+    check_speed();
     state_.step_halvings = step_halvings(state_.stage_step, state_.step_halvings, speed_, stable_.thinnest);
     lap(Part::move);
 }
@@ -101,6 +105,26 @@ void Simulation::update_forces(double dt) {                               // dt 
     sum_contacts(model_, state_.contacts, incidence_, state_.load);
     if (model_.local_damping > 0.0) damp_locally(model_, state_.motion, state_.load, state_.damping);
     lap(Part::sum);
+}
+
+void Simulation::check_speed() const {
+    if (std::isfinite(speed_)) return;
+    for (BlockId b = 0; b < model_.blocks.size(); ++b) {
+        const Vec2& v = state_.motion.velocity[b];
+        if (std::isfinite(v.x()) && std::isfinite(v.y()) && std::isfinite(state_.motion.spin[b])) continue;
+        const Vec2 at = model_.blocks.start[b] + model_.origin;
+        throw DivergenceError("block " + std::to_string(b) + ", at (" + std::to_string(at.x()) + ", " + std::to_string(at.y()) +
+                              ") at the start, has no finite velocity any more: t = " + std::to_string(state_.time) +
+                              " s, step " + std::to_string(state_.total_steps) +
+                              "; the step is too long for the stiffness, or loads grow without bound: leave "
+                              "run.time_step out, or look at the last frame");
+    }
+}
+
+double Simulation::recorded_time() const {
+    double length = 0.0;
+    for (int i = first_recorded_; i < stage_count(); ++i) length += stages_[i].until.time.value_or(0.0);
+    return length;
 }
 
 double Simulation::time_step() const {
@@ -213,11 +237,13 @@ void Simulation::delete_blocks() {
 }
 
 void Simulation::begin_stage() {
+    // What a stage changes (blocks deleted, stiffness) is no drift of the integration.
+    const double drift = state_.step > 0 ? energy_drift() : 0.0;
     state_.stage_time = 0.0;
     state_.step_halvings = 0;
     state_.damping.clear();
     state_.release.clear();
-    calm_checks_ = 0;
+    state_.calm_checks = 0;
     equilibrium_ = false;
     apply_stage();
     if (!stage().remove.empty()) {
@@ -246,6 +272,7 @@ void Simulation::begin_stage() {
         state_.stage_step = dt;
     }
     state_.ledger.kinetic0 += talus::ledger_error(model_, state_, state_.stage_step);
+    state_.ledger.total0 = energies().total() - drift;
 }
 
 bool Simulation::end_stage() {
@@ -273,8 +300,8 @@ bool Simulation::stage_over() {
     const Until& until = stage().until;
     if (until.time && state_.stage_time >= *until.time * (1.0 - 1e-12)) return true;
     if (!until.equilibrium || state_.step % calm_interval != 0 || state_.stage_time == 0.0) return false;
-    calm_checks_ = unbalanced_ratio(model_, state_) < *until.equilibrium ? calm_checks_ + 1 : 0;
-    equilibrium_ = calm_checks_ >= calm_needed;
+    state_.calm_checks = unbalanced_ratio(model_, state_) < *until.equilibrium ? state_.calm_checks + 1 : 0;
+    equilibrium_ = state_.calm_checks >= calm_needed;
     return equilibrium_;
 }
 

@@ -38,12 +38,15 @@ public:
     const Scenario& scenario() const { return scenario_; }
     const Model& model() const { return model_; }
     const State& state() const { return state_; }
+    const State& first_state() const { return first_; }      // when the scene was built: where places are looked up
     const StageSpec& stage() const { return stages_[state_.stage]; }
     int stage_count() const { return static_cast<int>(stages_.size()); }
     const StableStep& stable() const { return stable_; }
     const BuildReport& report() const { return report_; }
     double skin() const { return skin_; }
     double time_step() const;  // s, of the next step (before the cut at the end)
+    bool recorded() const { return state_.stage >= first_recorded_; }  // no later stage sets the clock back
+    double recorded_time() const;    // s, length of the recorded stages as far as it is given
     bool reached_equilibrium() const { return equilibrium_; }
     Energies energies() const;
     double ledger_error() const;                           // J
@@ -60,12 +63,14 @@ private:
     void update_forces(double dt);
     bool left_boxes() const;
     void refresh();
+    void check_speed() const;
     void lap(Part part) { seconds_[static_cast<int>(part)] += watch_.lap(); }
 
     const Scenario scenario_;
     std::vector<StageSpec> stages_;  // those of the scenario and, last, `run`
     Model model_;
-    State state_;
+    State state_, first_;
+    int first_recorded_ = 0;
     BuildReport report_;
     std::vector<Load> boundary_loads_;  // of initial stress: always there
     std::vector<DrivenBlock> driven_;   // act in the last stage only
@@ -82,9 +87,8 @@ private:
 
     StableStep stable_;
     bool equilibrium_ = false;
-    int calm_checks_ = 0;
     double speed_ = 0.0;
-    std::int64_t refreshes_ = 0;
+    std::int64_t refreshes_ = 0, steps_done_ = 0;
     std::array<double, part_names.size()> seconds_{};
     Stopwatch watch_;
 };

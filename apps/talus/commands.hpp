@@ -1,0 +1,38 @@
+// The subcommands of `talus`. Each returns an exit code; what the user or the disk did wrong is thrown.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace talus::cli {
+
+// 0; 1 expectation failed or equilibrium not reached; 2 anything the user gave; 3 diverged; 4 output failed in mid-run;
+// 130 interrupted
+enum ExitCode { ok = 0, not_met = 1, bad_input = 2, diverged = 3, output_failed = 4, interrupted = 130 };
+
+struct RunArguments {
+    std::string scenario, output, case_name;
+    std::vector<std::string> overrides;
+    bool force = false;
+};
+int run_command(const RunArguments& arguments);
+int resume_command(const std::string& results, int threads);
+
+struct CheckArguments {
+    std::string scenario, geometry;
+    std::vector<std::string> overrides;
+    bool resolved = false, schema = false;
+};
+int check_command(const CheckArguments& arguments);
+
+struct VerifyArguments {
+    std::string path;
+    std::vector<std::string> overrides;
+    std::string filter;
+};
+int verify_command(const VerifyArguments& arguments);
+
+int info_command(const std::string& results);
+int export_command(const std::string& results, const std::string& folder);
+
+}  // namespace talus::cli

@@ -1,0 +1,97 @@
+#include "commands.hpp"
+
+#include "contact/search.hpp"
+#include "core/errors.hpp"
+#include "core/version.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include <cstdio>
+#include <exception>
+#include <functional>
+
+using namespace talus;
+using namespace talus::cli;
+
+namespace {
+
+// Options that are only a shorter way to write --set.
+void add_overrides(CLI::App& command, std::vector<std::string>& overrides) {
+    command.add_option("--set", overrides, "PATH=VALUE: change any key, e.g. joints.bedding.friction_angle_deg=25")
+        ->allow_extra_args(false);
+    const auto shorthand = [&](const char* option, const char* key, const char* help) {
+        command.add_option_function<std::string>(
+            option, [&overrides, key](const std::string& value) { overrides.push_back(std::string(key) + "=" + value); }, help);
+    };
+    shorthand("--solver", "run.solver", "auto or explicit");
+    shorthand("--search", "run.search", "isu, dess or direct; never changes a result");
+    shorthand("--threads", "run.threads", "never changes a result");
+    shorthand("--until", "run.until.time", "s, length of the run");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    CLI::App app{"2D discrete-element simulator for jointed rock and masonry", "talus"};
+    app.set_version_flag("--version", std::string("talus ") + version);
+    app.require_subcommand(1);
+    std::function<int()> command;
+
+    RunArguments run;
+    CLI::App* run_app = app.add_subcommand("run", "run a scenario and write its results");
+    run_app->add_option("scenario", run.scenario, "scenario file (YAML)")->required();
+    run_app->add_option("-o,--output", run.output, "result file; default: the name of the scenario with .h5, here");
+    run_app->add_option("--case", run.case_name, "run this row of `cases`");
+    run_app->add_flag("--force", run.force, "replace an existing result instead of choosing a numbered name");
+    add_overrides(*run_app, run.overrides);
+    run_app->callback([&] { command = [&] { return run_command(run); }; });
+
+    CheckArguments check;
+    CLI::App* check_app = app.add_subcommand("check", "what is known before a run: faults, blocks, joints, step, cost");
+    check_app->add_option("scenario", check.scenario, "scenario file (YAML)");
+    check_app->add_flag("--resolved", check.resolved, "print the scenario with every default as canonical JSON, nothing else");
+    check_app->add_option("--geometry", check.geometry, "write the blocks as a result file with one frame, for a picture");
+    check_app->add_flag("--schema", check.schema, "print the JSON Schema of scenario files, for editors");
+    add_overrides(*check_app, check.overrides);
+    check_app->callback([&] { command = [&] { return check_command(check); }; });
+
+    std::string results, folder = ".";
+    int threads = 0;
+    CLI::App* resume_app = app.add_subcommand("resume", "go on with a run that was interrupted, bit for bit");
+    resume_app->add_option("results", results, "result file, with its .restart.h5 beside it")->required();
+    resume_app->add_option("--threads", threads, "default: as before");
+    resume_app->callback([&] { command = [&] { return resume_command(results, threads); }; });
+
+    CLI::App* info_app = app.add_subcommand("info", "what is in a result file");
+    info_app->add_option("results", results)->required();
+    info_app->callback([&] { command = [&] { return info_command(results); }; });
+
+    CLI::App* export_app = app.add_subcommand("export", "histories and energies as CSV");
+    export_app->add_option("results", results)->required();
+    export_app->add_option("-o,--output", folder, "folder");
+    export_app->callback([&] { command = [&] { return export_command(results, folder); }; });
+
+    VerifyArguments verify;
+    verify.path = "scenarios/verification";
+    CLI::App* verify_app = app.add_subcommand("verify", "run scenarios that say what they expect, and compare");
+    verify_app->add_option("path", verify.path, "folder or file; default scenarios/verification");
+    verify_app->add_option("--case", verify.filter, "only cases whose name contains this");
+    add_overrides(*verify_app, verify.overrides);
+    verify_app->callback([&] { command = [&] { return verify_command(verify); }; });
+
+    try {
+        app.parse(argc, argv);
+        return command();
+    } catch (const CLI::ParseError& error) {
+        return app.exit(error) == 0 ? ok : bad_input;
+    } catch (const InputError& error) {
+        std::fprintf(stderr, "%s\n", error.what());
+        return bad_input;
+    } catch (const DivergenceError& error) {
+        std::fprintf(stderr, "diverged: %s\n", error.what());
+        return diverged;
+    } catch (const OutputError& error) {
+        std::fprintf(stderr, "output failed: %s\n", error.what());
+        return output_failed;
+    }
+}

@@ -1,0 +1,145 @@
+#include "commands.hpp"
+#include "progress.hpp"
+#include "summary.hpp"
+
+#include "core/errors.hpp"
+#include "output/output_path.hpp"
+#include "scenario/reader.hpp"
+#include "simulation/run.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+namespace talus::cli {
+namespace {
+
+std::atomic<bool> asked_to_stop{false};
+
+void ask_to_stop(int) { asked_to_stop = true; }
+
+// Ctrl-C and a polite kill end the run at the next step, with a restart file.
+void listen_for_signals() {
+    std::signal(SIGINT, ask_to_stop);
+    std::signal(SIGTERM, ask_to_stop);
+}
+
+Scenario pick(const RunArguments& arguments) {
+    if (arguments.case_name.empty()) return read_scenario(arguments.scenario, arguments.overrides);
+    std::string names;
+    for (Case& row : read_cases(arguments.scenario, arguments.overrides)) {
+        if (row.name == arguments.case_name) return std::move(row.scenario);
+        names += (names.empty() ? "" : ", ") + row.name;
+    }
+    throw InputError(arguments.scenario + ": there is no case '" + arguments.case_name + "'; there are: " + names);
+}
+
+void print_scene(const Simulation& simulation) {
+    const Model& model = simulation.model();
+    const auto held = [&] {
+        int n = 0;
+        for (BlockId b = 0; b < model.blocks.size(); ++b) n += model.blocks.held(b);
+        return n;
+    }();
+    std::printf("%s\n%d blocks (%d held), %d convex parts, solver explicit, search %s, %d thread%s\n",
+                simulation.scenario().title.c_str(), model.blocks.size(), held, model.parts.size(),
+                simulation.scenario().run.search.c_str(), simulation.scenario().run.threads,
+                simulation.scenario().run.threads == 1 ? "" : "s");
+    for (const std::string& warning : simulation.report().warnings) std::printf("warning: %s\n", warning.c_str());
+}
+
+// Runs what is set up and closes the files, however it ends. What was written stays readable in every case.
+int carry_out(Simulation& simulation, Recorder& recorder, Watch* watch, Entry entry) {
+    listen_for_signals();
+    Progress progress;
+    Stopwatch clock;
+    RunOptions options;
+    options.recorder = &recorder;
+    options.watch = watch;
+    options.entry = entry;
+    options.stage_begun = [&](const Simulation& s) {
+        progress.stage_begun(s);
+        print_stage(s);
+        std::fflush(stdout);
+    };
+    options.progress = [&](const Simulation& s) { progress(s); };
+    options.interrupted = [] { return asked_to_stop.load(); };
+    if (entry == Entry::resumed) progress.stage_begun(simulation);
+
+    Outcome outcome = Outcome::complete;
+    try {
+        outcome = run(simulation, options);
+    } catch (const DivergenceError&) {
+        progress.done();
+        recorder.finish(simulation, "diverged", clock.seconds());
+        std::printf("results up to the last good frame: %s\n", recorder.path().c_str());
+        throw;
+    } catch (const OutputError&) {
+        progress.done();
+        std::printf("results up to the last complete frame: %s\n", recorder.path().c_str());
+        throw;
+    }
+    progress.done();
+    const char* status = outcome == Outcome::complete      ? "complete"
+                         : outcome == Outcome::interrupted ? "interrupted"
+                                                           : "stopped";
+    recorder.finish(simulation, status, clock.seconds());
+    print_summary(simulation, clock.seconds());
+    std::printf("%lld frames in %s\n", static_cast<long long>(recorder.frames()), recorder.path().c_str());
+    if (outcome == Outcome::interrupted) {
+        std::printf("interrupted at t = %s; go on with: talus resume %s\n", number(simulation.state().time, "s").c_str(),
+                    recorder.path().c_str());
+        return interrupted;
+    }
+    int failed = 0;
+    if (watch) failed = print_verdicts(watch->judge(), "  ");
+    if (outcome == Outcome::no_equilibrium) {
+        std::printf("a stage that was to end in equilibrium ran out of time: unbalanced ratio %.2g\n",
+                    unbalanced_ratio(simulation.model(), simulation.state()));
+        return not_met;
+    }
+    return failed > 0 ? not_met : ok;
+}
+
+std::string default_output(const std::string& scenario) {
+    return std::filesystem::path(scenario).stem().string() + ".h5";
+}
+
+}  // namespace
+
+int run_command(const RunArguments& arguments) {
+    const Scenario scenario = pick(arguments);
+    const std::string output = choose_output_path(
+        arguments.output.empty() ? default_output(arguments.scenario) : arguments.output, arguments.force);
+    Simulation simulation(scenario, build(scenario));
+    print_scene(simulation);
+    simulation.begin_stage();  // before any file is touched: the time step may be refused
+    Recorder recorder(output, simulation, arguments.overrides);
+    std::unique_ptr<Watch> watch;
+    if (!scenario.expect.empty())
+        watch = std::make_unique<Watch>(scenario.expect, simulation.model(), simulation.first_state());
+    return carry_out(simulation, recorder, watch.get(), Entry::begun);
+}
+
+int resume_command(const std::string& results, int threads) {
+    const RestartInfo info = read_restart_info(restart_path(results));
+    Scenario scenario = read_scenario_text(info.scenario_text, info.scenario_file,
+                                           std::filesystem::path(info.scenario_file).parent_path().string());
+    if (scenario.hash != info.scenario_hash)
+        throw InputError(restart_path(results) + ": the scenario in it reads differently with this version");
+    if (threads > 0) scenario.run.threads = threads;
+    Scene scene = build(scenario);
+    State state = read_restart(restart_path(results), scene.model);
+    Simulation simulation(scenario, std::move(scene), std::move(state));
+    print_scene(simulation);
+    Recorder recorder(results, simulation, info);
+    std::printf("going on from t = %s, frame %lld\n", number(simulation.state().time, "s").c_str(),
+                static_cast<long long>(recorder.frames()));
+    if (!scenario.expect.empty()) std::printf("note: expectations need the whole run and are not judged after a resume\n");
+    return carry_out(simulation, recorder, nullptr, Entry::resumed);
+}
+
+}  // namespace talus::cli

@@ -1,0 +1,20 @@
+// What a person wants to know when a run is over.
+#pragma once
+
+#include "simulation/expect.hpp"
+#include "simulation/simulation.hpp"
+
+#include <string>
+#include <vector>
+
+namespace talus::cli {
+
+/// "1.23e6 J", "0.5 mm": a number with four digits and its unit.
+std::string number(double value, const char* unit = "");
+
+void print_stage(const Simulation& simulation);
+void print_summary(const Simulation& simulation, double wall_time);
+/// One line each; returns how many failed.
+int print_verdicts(const std::vector<Verdict>& verdicts, const std::string& indent);
+
+}  // namespace talus::cli

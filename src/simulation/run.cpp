@@ -1,0 +1,198 @@
+#include "simulation/run.hpp"
+
+#include "core/errors.hpp"
+#include "output/output_path.hpp"
+#include "output/reader.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+
+namespace talus {
+namespace {
+
+constexpr double restart_interval = 5.0;  // s of wall time between restart files: a kill costs no more than that
+constexpr int default_frames = 50;
+
+std::string now_iso() {
+    const std::time_t now = std::time(nullptr);
+    char text[32];
+    std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", std::gmtime(&now));
+    return text;
+}
+
+RunInfo run_info(const Simulation& simulation, const std::vector<std::string>& overrides) {
+    const Scenario& scenario = simulation.scenario();
+    RunInfo info;
+    info.title = scenario.title;
+    info.source = scenario.source;
+    info.scenario_file = scenario.file;
+    info.scenario_text = scenario.text;
+    info.canonical_json = scenario.canonical_json;
+    info.scenario_hash = scenario.hash;
+    info.overrides = overrides;
+    info.solver = "explicit";
+    info.search = scenario.run.search;
+    info.threads = scenario.run.threads;
+    info.skin = simulation.skin();
+    info.time_step = simulation.time_step();
+    info.stable_bound = simulation.stable().bound;
+    info.stable_estimate = simulation.stable().estimate;
+    info.start_date = now_iso();
+    info.contacts = scenario.record.contacts;
+    return info;
+}
+
+RestartInfo restart_info(const Simulation& simulation, const std::vector<std::string>& overrides) {
+    const Scenario& scenario = simulation.scenario();
+    RestartInfo info;
+    info.scenario_file = scenario.file;
+    info.scenario_text = scenario.text;
+    info.scenario_hash = scenario.hash;
+    info.overrides = overrides;
+    return info;
+}
+
+double default_interval(const Simulation& simulation) {
+    const RecordSpec& record = simulation.scenario().record;
+    if (record.frame_every) return *record.frame_every;
+    const double length = simulation.recorded_time();
+    return length / record.frame_count.value_or(default_frames);
+}
+
+Gauges gauges_of(const Simulation& simulation, bool energies) {
+    Gauges gauges;
+    if (energies) gauges.energies = simulation.energies();
+    gauges.time_step = simulation.time_step();
+    gauges.stable_step = simulation.stable().estimate;
+    return gauges;
+}
+
+// Due at or after a multiple of the interval; the slack absorbs the rounding of summed steps.
+constexpr double slack = 1e-9;
+bool due(double time, std::int64_t k, double every) { return time >= every * static_cast<double>(k) * (1.0 - slack); }
+double next_multiple(double time, double every) { return every * (std::floor(time / every * (1.0 + slack)) + 1.0); }
+
+double last_time(const std::string& path, std::int64_t frames) {
+    return frames > 0 ? ResultsReader(path).frame_times().at(static_cast<std::size_t>(frames - 1)) : -1.0;
+}
+
+}  // namespace
+
+Recorder::Recorder(const std::string& path, const Simulation& simulation, const std::vector<std::string>& overrides)
+    : info_(restart_info(simulation, overrides)),
+      writer_(path, simulation.model(), run_info(simulation, overrides)),
+      frame_every_(default_interval(simulation)) {
+    add_histories(simulation);
+}
+
+Recorder::Recorder(const std::string& path, const Simulation& simulation, const RestartInfo& info)
+    : info_(info),
+      writer_(ResultsWriter::reopen(path, info.scenario_hash, info.frames, info.history_rows)),
+      frame_every_(default_interval(simulation)),
+      last_frame_time_(last_time(path, info.frames)) {
+    add_histories(simulation);
+    for (std::size_t i = 0; i < histories_.size(); ++i)
+        for (const auto& [name, rows] : info.history_rows)
+            if (name == simulation.scenario().record.history[i].name) histories_[i].rows = rows;
+}
+
+void Recorder::add_histories(const Simulation& simulation) {
+    for (const HistorySpec& spec : simulation.scenario().record.history) {
+        History history;
+        std::vector<HistoryColumn> columns;
+        for (const ProbeSpec& probe : spec.probes) {
+            history.probes.push_back(make_probe(probe, simulation.model(), simulation.first_state()));
+            columns.push_back({history.probes.back().name, history.probes.back().unit});
+        }
+        history.every = spec.every;
+        history.id = writer_.add_history(spec.name, columns);
+        histories_.push_back(std::move(history));
+    }
+}
+
+void Recorder::write_frame(const Simulation& simulation) {
+    writer_.frame(simulation.model(), simulation.state(), simulation.energies());
+    last_frame_time_ = simulation.state().time;
+}
+
+void Recorder::frame_and_restart(const Simulation& simulation) {
+    write_frame(simulation);
+    if (!restart_written_ || since_restart_.seconds() > restart_interval) save_restart(simulation);
+}
+
+void Recorder::sample(const Simulation& simulation, History& history) {
+    const bool energies =
+        std::any_of(history.probes.begin(), history.probes.end(), [](const Probe& p) { return p.needs_energies; });
+    const Gauges gauges = gauges_of(simulation, energies);
+    std::vector<double> values;
+    for (const Probe& probe : history.probes) values.push_back(probe.read(simulation.model(), simulation.state(), gauges));
+    writer_.append_history(history.id, simulation.state().time, values);
+    ++history.rows;
+}
+
+void Recorder::begin_stage(const Simulation& simulation) {
+    if (!simulation.recorded() || last_frame_time_ >= simulation.state().time) return;
+    for (History& history : histories_) sample(simulation, history);
+    frame_and_restart(simulation);
+}
+
+void Recorder::after_step(const Simulation& simulation) {
+    if (!simulation.recorded()) return;
+    const double time = simulation.state().time;
+    for (History& history : histories_)
+        if (!history.every || due(time, history.rows, *history.every)) sample(simulation, history);
+    if (frame_every_ > 0.0 && time >= next_multiple(last_frame_time_, frame_every_) * (1.0 - slack)) frame_and_restart(simulation);
+}
+
+void Recorder::end_stage(const Simulation& simulation) {
+    if (simulation.recorded() && last_frame_time_ < simulation.state().time) frame_and_restart(simulation);
+}
+
+void Recorder::save_restart(const Simulation& simulation) {
+    writer_.flush();
+    info_.frames = writer_.frames();
+    info_.history_rows = writer_.history_rows();
+    write_restart(restart_file(), info_, simulation.state());
+    restart_written_ = true;
+    since_restart_.lap();
+}
+
+void Recorder::finish(const Simulation& simulation, const std::string& status, double wall_time) {
+    if (status != "diverged") save_restart(simulation);
+    writer_.finish({status, wall_time, simulation.state().total_steps, simulation.state().time});
+}
+
+void Recorder::close(const std::string& status) { writer_.finish({status, 0.0, 0, 0.0}); }
+
+std::string Recorder::restart_file() const { return restart_path(path()); }
+
+Outcome run(Simulation& simulation, const RunOptions& options) {
+    bool settled = true;
+    const auto watch = [&] {
+        if (options.watch && simulation.recorded())
+            options.watch->record(simulation.model(), simulation.state(),
+                                  gauges_of(simulation, options.watch->needs_energies()));
+    };
+    for (Entry entry = options.entry;; entry = Entry::fresh) {
+        if (entry == Entry::fresh) simulation.begin_stage();
+        if (entry != Entry::resumed) {
+            if (options.stage_begun) options.stage_begun(simulation);
+            if (options.recorder) options.recorder->begin_stage(simulation);
+            watch();
+        }
+        while (!simulation.stage_over()) {
+            if (options.interrupted && options.interrupted()) return Outcome::interrupted;
+            simulation.step();
+            if (options.recorder) options.recorder->after_step(simulation);
+            watch();
+            if (options.progress) options.progress(simulation);
+        }
+        if (options.recorder) options.recorder->end_stage(simulation);
+        settled = settled && (!simulation.stage().until.equilibrium || simulation.reached_equilibrium());
+        if (!simulation.end_stage()) break;
+    }
+    return settled ? Outcome::complete : Outcome::no_equilibrium;
+}
+
+}  // namespace talus

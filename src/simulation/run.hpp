@@ -1,0 +1,77 @@
+// A whole run: stage after stage, with what is recorded on the way.
+#pragma once
+
+#include "output/restart.hpp"
+#include "output/results.hpp"
+#include "simulation/expect.hpp"
+#include "simulation/simulation.hpp"
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace talus {
+
+enum class Outcome { complete, no_equilibrium, interrupted };
+
+/// Where a run writes. Recording begins with the first stage after the last one that resets: results start at time 0.
+class Recorder {
+public:
+    /// Replaces the file. Throws InputError if it cannot be written or a history fits nothing.
+    Recorder(const std::string& path, const Simulation& simulation, const std::vector<std::string>& overrides);
+    /// Goes on after a restart point.
+    Recorder(const std::string& path, const Simulation& simulation, const RestartInfo& info);
+
+    void begin_stage(const Simulation& simulation);     // a frame if the clock has just been set
+    void after_step(const Simulation& simulation);      // what is due by now
+    void end_stage(const Simulation& simulation);       // a frame of its end
+    void write_frame(const Simulation& simulation);     // now, due or not
+    void save_restart(const Simulation& simulation);
+    void close(const std::string& status);              // without a restart file
+    void finish(const Simulation& simulation, const std::string& status, double wall_time);
+
+    std::int64_t frames() const { return writer_.frames(); }
+    const std::string& path() const { return writer_.path(); }
+    std::string restart_file() const;
+
+private:
+    struct History {
+        std::vector<Probe> probes;
+        std::optional<double> every;
+        std::int64_t rows = 0;
+        int id = 0;
+    };
+    void add_histories(const Simulation& simulation);
+    void frame_and_restart(const Simulation& simulation);
+    void sample(const Simulation& simulation, History& history);
+
+    RestartInfo info_;
+    ResultsWriter writer_;
+    std::vector<History> histories_;
+    double frame_every_ = 0.0;           // s; 0: only at the ends of stages
+    double last_frame_time_ = -1.0;      // s
+    Stopwatch since_restart_;
+    bool restart_written_ = false;
+};
+
+enum class Entry {
+    fresh,    // nothing has been done yet
+    begun,    // the first stage has begun (its time step was accepted)
+    resumed,  // in the middle of a stage
+};
+
+struct RunOptions {
+    Recorder* recorder = nullptr;                              // none: nothing is written
+    Watch* watch = nullptr;                                    // none: expectations are not judged
+    std::function<void(const Simulation&)> stage_begun;        // after its step is chosen
+    std::function<void(const Simulation&)> progress;           // called every step; cheap
+    std::function<bool()> interrupted;                         // asked every step
+    Entry entry = Entry::fresh;
+};
+
+/// Runs to the end of the last stage. `no_equilibrium`: a stage that was to end in equilibrium ran out of time.
+/// Throws DivergenceError, after a last look at everything worth keeping: the good frames stay.
+Outcome run(Simulation& simulation, const RunOptions& options);
+
+}  // namespace talus
