@@ -175,24 +175,18 @@ void constrain(Triangulation& triangulation, const Polygon& polygon) {
         triangulation.insert_constraint(vertices[i], vertices[(i + 1) % vertices.size()]);
 }
 
-/// Triangles inside the polygon and outside its holes, numbered in their info (-1: outside).
-std::vector<Triangulation::Face_handle> inner_triangles(Triangulation& triangulation) {
-    constexpr int unseen = -2;
-    for (const auto face : triangulation.all_face_handles()) face->info() = unseen;
+/// Triangles inside the polygon and outside its holes, numbered in their info (-1: outside). Each is judged by its centre,
+/// for rounding may lay two stretches of an outline on each other, and then counting the edges crossed goes wrong.
+std::vector<Triangulation::Face_handle> inner_triangles(Triangulation& triangulation, const Polygon& outline,
+                                                        const std::vector<Polygon>& holes) {
+    for (const auto face : triangulation.all_face_handles()) face->info() = -1;
     std::vector<Triangulation::Face_handle> inner;
-    std::vector<Triangulation::Face_handle> todo{triangulation.infinite_face()};
-    todo[0]->info() = -1;
-    while (!todo.empty()) {
-        const auto face = todo.back();
-        todo.pop_back();
-        for (int i = 0; i < 3; ++i) {
-            const auto other = face->neighbor(i);
-            if (other->info() != unseen) continue;
-            const bool inside = (face->info() >= 0) != face->is_constrained(i);
-            other->info() = inside ? static_cast<int>(inner.size()) : -1;
-            if (inside) inner.push_back(other);
-            todo.push_back(other);
-        }
+    for (const auto face : triangulation.finite_face_handles()) {
+        const auto centre = CGAL::centroid(triangulation.triangle(face));
+        const auto around = [c = Vec2(centre.x(), centre.y())](const Polygon& polygon) { return contains(polygon, c); };
+        if (!around(outline) || std::any_of(holes.begin(), holes.end(), around)) continue;
+        face->info() = static_cast<int>(inner.size());
+        inner.push_back(face);
     }
     return inner;
 }
@@ -212,7 +206,11 @@ public:
                                   first + (i + 2) % 3,
                                   diagonal ? 3 * other->info() + other->index(face) : -1});
             }
-        for (const Edge& e : edges_) tolerance_ = std::max(tolerance_, rounding(std::array{e.from}));
+        Polygon corners;
+        for (const Edge& e : edges_) corners.push_back(e.from);
+        const Box box = bounds(corners);
+        rounding_ = rounding(corners);
+        thin_ = std::max(rounding_, 1e-8 * std::max(box.xmax - box.xmin, box.ymax - box.ymin));
     }
 
     std::vector<Polygon> join() {
@@ -221,9 +219,12 @@ public:
             if (edges_[e].twin > e) diagonals.push_back(e);
         std::stable_sort(diagonals.begin(), diagonals.end(), [&](int a, int b) { return length(a) > length(b); });
         for (const int d : diagonals)
-            if (turns_left(edges_[d].before, edges_[edges_[d].twin].next) &&
-                turns_left(edges_[edges_[d].twin].before, edges_[d].next))
-                remove(d);
+            if (bend(d) > rounding_) remove(d);
+        // Corners in one line, not next to each other (the ends of two teeth), leave a triangle without thickness. It goes
+        // to a neighbour even if that then has a straight corner. Where it cannot (a neck), it is left out below: a part
+        // without thickness would stop every time step.
+        for (const int d : diagonals)
+            if (edges_[d].twin >= 0 && (is_thin(d) || is_thin(edges_[d].twin)) && bend(d) > -thin_) remove(d);
         return loops();
     }
 
@@ -235,11 +236,25 @@ private:
 
     double length(int e) const { return (edges_[edges_[e].next].from - edges_[e].from).norm(); }
 
-    bool turns_left(int in, int out) const {  // a true corner: straight ones would split an edge of the part
+    /// How far the sharper of the two corners would stand out that are left when a diagonal goes, m; negative: inwards.
+    double bend(int d) const {
+        const int t = edges_[d].twin;
+        return std::min(bend(edges_[d].before, edges_[t].next), bend(edges_[t].before, edges_[d].next));
+    }
+    double bend(int in, int out) const {
         const Vec2 a = edges_[out].from - edges_[in].from;
         const Vec2 b = edges_[edges_[out].next].from - edges_[out].from;
-        return cross(a, b) > tolerance_ * (a + b).norm();
+        return cross(a, b) / std::max((a + b).norm(), rounding_);
     }
+
+    Polygon loop(int first) const {
+        Polygon polygon;
+        int e = first;
+        do polygon.push_back(edges_[e].from);
+        while ((e = edges_[e].next) != first);
+        return polygon;
+    }
+    bool is_thin(int e) const { return smallest_width(loop(e)) < thin_; }
 
     void connect(int in, int out) { edges_[in].next = out, edges_[out].before = in; }
 
@@ -255,17 +270,17 @@ private:
         std::vector<char> seen(edges_.size(), false);
         for (int first = 0; first < static_cast<int>(edges_.size()); ++first) {
             if (seen[first] || edges_[first].twin == -2) continue;
-            parts.emplace_back();
-            for (int e = first; !seen[e]; e = edges_[e].next) {
-                seen[e] = true;
-                parts.back().push_back(edges_[e].from);
-            }
+            parts.push_back(loop(first));
+            for (int e = first; !seen[e]; e = edges_[e].next) seen[e] = true;
         }
+        const auto thin = [&](const Polygon& part) { return smallest_width(part) < thin_; };
+        if (!std::all_of(parts.begin(), parts.end(), thin)) std::erase_if(parts, thin);
         return parts;
     }
 
     std::vector<Edge> edges_;
-    double tolerance_ = 0.0;
+    double rounding_;  // m, below which a corner is straight
+    double thin_;      // m, below which a part is nothing a block could be made of
 };
 
 }  // namespace
@@ -285,7 +300,7 @@ std::vector<Polygon> convex_parts(const Polygon& outline, const std::vector<Poly
     Triangulation triangulation;
     constrain(triangulation, outline);
     for (const Polygon& hole : holes) constrain(triangulation, hole);
-    return Parts(inner_triangles(triangulation)).join();
+    return Parts(inner_triangles(triangulation, outline, holes)).join();
 }
 
 }  // namespace talus

@@ -72,7 +72,8 @@ CutResult cut(const CutInput& input);
 
 /// Convex parts of a simple polygon with holes; {outline} itself if it is convex. Parts have no corners of their own: they
 /// are parted by diagonals, so that two of them share a whole edge with equal coordinates; at most four times as many as
-/// the fewest possible (Hertel & Mehlhorn 1983).
+/// the fewest possible (Hertel & Mehlhorn 1983). Necks and tails thinner than 1e-8 of the polygon are no parts: they are
+/// joined to a part, which may then bend inwards by as much, or left out.
 std::vector<Polygon> convex_parts(const Polygon& outline, const std::vector<Polygon>& holes = {});
 
 }  // namespace talus

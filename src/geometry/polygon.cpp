@@ -163,9 +163,13 @@ double smallest_width(PolygonView convex) {
     double width = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < convex.size(); ++i) {  // the narrowest strip has one edge along it
         const Vec2 inward = perp(convex[after(i, convex)] - convex[i]).normalized();
-        double farthest = 0.0;
-        for (const Vec2& corner : convex) farthest = std::max(farthest, inward.dot(corner - convex[i]));
-        width = std::min(width, farthest);
+        double nearest = 0.0, farthest = 0.0;  // both, for a corner may stand out by rounding
+        for (const Vec2& corner : convex) {
+            const double distance = inward.dot(corner - convex[i]);
+            nearest = std::min(nearest, distance);
+            farthest = std::max(farthest, distance);
+        }
+        width = std::min(width, farthest - nearest);
     }
     return width;
 }

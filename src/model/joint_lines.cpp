@@ -3,13 +3,12 @@
 #include "core/errors.hpp"
 #include "core/random.hpp"
 #include "geometry/polygon.hpp"
+#include "model/trace_lines.hpp"
 
 #include <algorithm>
 #include <cstdint>
 #include <limits>
-#include <map>
 #include <optional>
-#include <string_view>
 #include <utility>
 
 namespace talus {
@@ -207,72 +206,11 @@ void check(const JointSetSpec& set, const Box& box) {
         refuse("spacing cuts the rock more than a million times");
 }
 
-// ---- cracks and traces ---------------------------------------------------------------------------------------------
-
-/// Segments of a polyline whose two tips are moved outwards by `extend`; a closed one has no tips. Returns the tips moved.
-int add_polyline(std::vector<Vec2> points, double extend, int source, std::vector<CutLine>& lines) {
-    points.erase(std::unique(points.begin(), points.end()), points.end());
-    if (points.size() < 2) return 0;
-    const bool open = points.front() != points.back();
-    if (open) {
-        const Vec2 first = (points[0] - points[1]).normalized();
-        const Vec2 last = (points.back() - points[points.size() - 2]).normalized();
-        points.front() += extend * first;
-        points.back() += extend * last;
-    }
-    for (std::size_t i = 0; i + 1 < points.size(); ++i) lines.push_back({points[i], points[i + 1], source});
-    return open ? 2 : 0;
-}
-
-/// Moves points onto the nearest earlier point closer than `distance`, found in a grid of cells of that size.
-class Snapping {
-public:
-    explicit Snapping(double distance) : distance_(distance) {}
-
-    Vec2 operator()(const Vec2& p) {
-        const auto cell = [&](double x) { return static_cast<std::int64_t>(std::floor(x / distance_)); };
-        const std::int64_t i = cell(p.x()), j = cell(p.y());
-        const Vec2* nearest = nullptr;
-        for (std::int64_t di = -1; di <= 1; ++di)
-            for (std::int64_t dj = -1; dj <= 1; ++dj) {
-                const auto found = cells_.find({i + di, j + dj});
-                if (found == cells_.end()) continue;
-                for (const Vec2& q : found->second)
-                    if ((q - p).norm() < (nearest ? (*nearest - p).norm() : distance_)) nearest = &q;
-            }
-        if (nearest) return *nearest;
-        cells_[{i, j}].push_back(p);
-        return p;
-    }
-
-private:
-    double distance_;
-    std::map<std::pair<std::int64_t, std::int64_t>, std::vector<Vec2>> cells_;
-};
-
 }  // namespace
 
 std::vector<CutLine> joint_set_lines(const JointSetSpec& set, const Box& box, int source) {
     check(set, box);
     return JointSetLines(set, box, source).run();
-}
-
-TraceLines trace_lines(const TraceMapSpec& map, double reach, int source) {
-    TraceLines result;
-    Snapping snapping(map.snap);
-    for (std::vector<Vec2> points : map.lines) {
-        if (map.snap > 0.0)
-            for (Vec2& p : points) {
-                const Vec2 snapped = snapping(p);
-                result.corners_snapped += snapped != p;
-                p = snapped;
-            }
-        const std::size_t before = result.lines.size();
-        const int tips = add_polyline(std::move(points), std::max(map.extend, reach), source, result.lines);
-        result.traces += result.lines.size() > before;
-        if (map.extend > 0.0) result.tips_extended += tips;
-    }
-    return result;
 }
 
 double tip_reach(const RockSpec& rock) {
@@ -291,7 +229,7 @@ std::vector<CutLine> joint_lines(const RockSpec& rock) {
     }
     for (const CrackSpec& crack : rock.cracks) add_polyline(crack.points, tip_reach(rock), source++, lines);
     if (rock.traces) {
-        const TraceLines traces = trace_lines(*rock.traces, tip_reach(rock), source);
+        const TraceLines traces = trace_lines(*rock.traces, rock.outline, tip_reach(rock), source);
         lines.insert(lines.end(), traces.lines.begin(), traces.lines.end());
     }
     return lines;

@@ -21,18 +21,6 @@ namespace talus {
 /// ten million of them away.
 std::vector<CutLine> joint_set_lines(const JointSetSpec& set, const Box& box, int source);
 
-struct TraceLines {
-    std::vector<CutLine> lines;
-    int traces = 0;  // polylines with at least one segment left
-    int tips_extended = 0;
-    int corners_snapped = 0;  // corners moved onto another one
-};
-
-/// Segments of a trace map: corners closer than `snap` to an earlier one are moved onto it, then both tips of every trace
-/// are extended along their last segments by `extend`, at least by `reach` (m): a trace that ends on another line then meets
-/// it in spite of rounding.
-TraceLines trace_lines(const TraceMapSpec& map, double reach, int source);
-
 /// All lines of the rock. Sources: joint sets are 0, 1, ..., then each crack has one, then the trace map as a whole. Joint
 /// lines reach past the box of the outline by 1 % of its diagonal and cracks by 1e-9 of it past their tips, so that no end
 /// decides by rounding whether a block is cut; what sticks out is pruned by the cut.

@@ -382,6 +382,29 @@ TEST_CASE("concave polygons are parted by few diagonals between their own corner
     }
 }
 
+TEST_CASE("corners in one line, necks and tails give no part without thickness") {
+    for (const double angle : {0.0, 0.1, 0.7, 1.1}) {  // a cross, turned so that its corners are in line but for rounding
+        Polygon cross_shape{{1, 0}, {2, 0}, {2, 1}, {3, 1}, {3, 2}, {2, 2}, {2, 3}, {1, 3}, {1, 2}, {0, 2}, {0, 1}, {1, 1}};
+        for (Vec2& p : cross_shape) p = std::cos(angle) * p + std::sin(angle) * perp(p);
+        double area = 0.0;
+        for (const Polygon& part : convex_parts(cross_shape)) {
+            CHECK(is_convex(part));
+            CHECK(smallest_width(part) > 0.5);
+            area += signed_area(part);
+        }
+        CHECK(area == Approx(5.0).epsilon(1e-14));
+    }
+    for (const double width : {1e-15, 1e-12, 1e-10}) {  // an hourglass
+        const Polygon hourglass{{0, 0}, {2, 0}, {1 + width, 1}, {2, 2}, {0, 2}, {1, 1}};
+        double area = 0.0;
+        for (const Polygon& part : convex_parts(hourglass)) {
+            CHECK(smallest_width(part) > 0.5);
+            area += signed_area(part);
+        }
+        CHECK(area == Approx(2.0).epsilon(1e-9));
+    }
+}
+
 TEST_CASE("cutting far from the origin gives the same blocks, moved") {
     const Vec2 far(4.5e5, 6.5e6);  // exact in binary, like all numbers here
     CutInput input = rock(box_outline(0, 0, 8, 8));

@@ -2,6 +2,7 @@
 #include "core/errors.hpp"
 #include "geometry/cut.hpp"
 #include "geometry/polygon.hpp"
+#include "model/trace_lines.hpp"
 #include "support/catch.hpp"
 
 #include <algorithm>
@@ -257,7 +258,7 @@ TEST_CASE("traces are snapped to earlier corners and extended at both tips") {
     map.extend = 0.5;
     map.snap = 0.1;
     map.lines = {{{0, 0}, {2, 0}, {4, 0}}, {{4.03, 0.04}, {4, 3}}, {{9, 9}, {9.05, 9}}, {{6, 6}, {7, 6}, {7, 7}, {6, 6}}};
-    const TraceLines result = trace_lines(map, 0.0, 2);
+    const TraceLines result = trace_lines(map, square(20), 0.0, 2);
     CHECK(result.corners_snapped == 2);  // the second trace starts at the end of the first; the third one shrinks to a point
     CHECK(result.traces == 3);
     CHECK(result.tips_extended == 4);  // the closed one has none
@@ -268,6 +269,35 @@ TEST_CASE("traces are snapped to earlier corners and extended at both tips") {
     CHECK((result.lines[2].to - Vec2(4, 3.5)).norm() < 1e-15);
     CHECK(result.lines[3].from == Vec2(6, 6));
     for (const CutLine& line : result.lines) CHECK(line.source == 2);
+}
+
+TEST_CASE("a trace drawn past a corner within `snap` is led through it, so that no sliver is left") {
+    TraceMapSpec map;
+    map.snap = 0.01;
+    map.lines = {{{-20, 0}, {20, 0}},                            // a long trace,
+                 {{3, 0.004}, {5, 4}, {20, 4}},                  // one that ends 4 mm beside it,
+                 {{-8, -0.003}, {-2, 0.002}, {0, 3}, {0, 20}}};  // and one that follows it for a while
+    const TraceLines result = trace_lines(map, square(10), 1e-8, 0);
+    CHECK(result.junctions == 3);
+    CHECK(result.corners_snapped == 0);
+    CHECK(result.tips_extended == 0);  // by 1e-8 m only, which is not counted
+
+    CutInput input;
+    input.outline = square(10);
+    input.lines = result.lines;
+    const CutResult cut_through = cut(input);
+    CHECK(cut_through.blocks.size() == 4);
+    for (const CutBlock& block : cut_through.blocks) CHECK(block.area > 1.0);
+}
+
+TEST_CASE("corners of traces near a corner of the outline become that corner") {
+    TraceMapSpec map;
+    map.snap = 0.1;
+    map.lines = {{{-9.95, -10.02}, {0, 0}, {9.98, 10}}};
+    const TraceLines result = trace_lines(map, square(10), 0.0, 0);
+    CHECK(result.corners_snapped == 2);
+    CHECK(result.lines.front().from == Vec2(-10, -10));
+    CHECK(result.lines.back().to == Vec2(10, 10));
 }
 
 TEST_CASE("sets that cannot be drawn are refused") {

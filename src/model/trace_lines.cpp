@@ -1,0 +1,127 @@
+#include "model/trace_lines.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <map>
+#include <utility>
+
+namespace talus {
+namespace {
+
+using Polyline = std::vector<Vec2>;
+
+/// Moves points onto the nearest earlier point closer than `distance`, found in a grid of cells of that size.
+class Snapping {
+public:
+    explicit Snapping(double distance) : distance_(distance) {}
+
+    Vec2 operator()(const Vec2& p) {
+        const auto cell = [&](double x) { return static_cast<std::int64_t>(std::floor(x / distance_)); };
+        const std::int64_t i = cell(p.x()), j = cell(p.y());
+        const Vec2* nearest = nullptr;
+        for (std::int64_t di = -1; di <= 1; ++di)
+            for (std::int64_t dj = -1; dj <= 1; ++dj) {
+                const auto found = cells_.find({i + di, j + dj});
+                if (found == cells_.end()) continue;
+                for (const Vec2& q : found->second)
+                    if ((q - p).norm() < (nearest ? (*nearest - p).norm() : distance_)) nearest = &q;
+            }
+        if (nearest) return *nearest;
+        cells_[{i, j}].push_back(p);
+        return p;
+    }
+
+    /// All points that stayed where they were, by x.
+    std::vector<Vec2> points() const {
+        std::vector<Vec2> all;
+        for (const auto& [cell, points] : cells_) all.insert(all.end(), points.begin(), points.end());
+        std::stable_sort(all.begin(), all.end(), [](const Vec2& a, const Vec2& b) { return a.x() < b.x(); });
+        return all;
+    }
+
+private:
+    double distance_;
+    std::map<std::pair<std::int64_t, std::int64_t>, std::vector<Vec2>> cells_;
+};
+
+/// Corners (sorted by x) nearer than `distance` to the segment from a to b, in order along it, its ends left out.
+std::vector<Vec2> corners_beside(const Vec2& a, const Vec2& b, double distance, const std::vector<Vec2>& corners) {
+    const Vec2 along = (b - a).normalized();
+    std::vector<std::pair<double, Vec2>> found;
+    const auto by_x = [](const Vec2& p, double x) { return p.x() < x; };
+    for (auto p = std::lower_bound(corners.begin(), corners.end(), std::min(a.x(), b.x()) - distance, by_x);
+         p != corners.end() && p->x() <= std::max(a.x(), b.x()) + distance; ++p) {
+        const double at = along.dot(*p - a);
+        if (at > 0.0 && at < (b - a).norm() && std::abs(cross(along, *p - a)) < distance && *p != a && *p != b)
+            found.emplace_back(at, *p);
+    }
+    std::sort(found.begin(), found.end(), [](const auto& p, const auto& q) { return p.first < q.first; });
+    std::vector<Vec2> result;
+    for (const auto& [at, p] : found) result.push_back(p);
+    return result;
+}
+
+/// Leads a polyline through the corners it passes. Returns how many there were.
+int lead_through(Polyline& points, double distance, const std::vector<Vec2>& corners) {
+    Polyline led;
+    for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+        led.push_back(points[i]);
+        for (const Vec2& p : corners_beside(points[i], points[i + 1], distance, corners)) led.push_back(p);
+    }
+    led.push_back(points.back());
+    const int added = static_cast<int>(led.size() - points.size());
+    points = std::move(led);
+    return added;
+}
+
+/// Makes one corner of those that are meant to be one, in all traces.
+void join_corners(std::vector<Polyline>& traces, const Polygon& outline, double distance, TraceLines& report) {
+    Snapping snapping(distance);
+    for (const Vec2& p : outline) snapping(p);
+    for (Polyline& points : traces) {
+        for (Vec2& p : points) {
+            const Vec2 snapped = snapping(p);
+            report.corners_snapped += snapped != p;
+            p = snapped;
+        }
+        points.erase(std::unique(points.begin(), points.end()), points.end());
+    }
+    const std::vector<Vec2> corners = snapping.points();
+    for (Polyline& points : traces)  // a bent segment may pass the next corner; more than a few rounds do not happen
+        for (int round = 0; round < 5; ++round) {
+            const int added = lead_through(points, distance, corners);
+            report.junctions += added;
+            if (added == 0) break;
+        }
+}
+
+}  // namespace
+
+int add_polyline(std::vector<Vec2> points, double extend, int source, std::vector<CutLine>& lines) {
+    points.erase(std::unique(points.begin(), points.end()), points.end());
+    if (points.size() < 2) return 0;
+    const bool open = points.front() != points.back();
+    if (open) {
+        const Vec2 first = (points[0] - points[1]).normalized();
+        const Vec2 last = (points.back() - points[points.size() - 2]).normalized();
+        points.front() += extend * first;
+        points.back() += extend * last;
+    }
+    for (std::size_t i = 0; i + 1 < points.size(); ++i) lines.push_back({points[i], points[i + 1], source});
+    return open ? 2 : 0;
+}
+
+TraceLines trace_lines(const TraceMapSpec& map, const Polygon& outline, double reach, int source) {
+    TraceLines result;
+    std::vector<Polyline> traces = map.lines;
+    if (const double snap = std::max(map.snap, reach); snap > 0.0) join_corners(traces, outline, snap, result);
+    for (Polyline& points : traces) {
+        const std::size_t before = result.lines.size();
+        const int tips = add_polyline(std::move(points), std::max(map.extend, reach), source, result.lines);
+        result.traces += result.lines.size() > before;
+        if (map.extend > 0.0) result.tips_extended += tips;
+    }
+    return result;
+}
+
+}  // namespace talus
