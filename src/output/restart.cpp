@@ -1,0 +1,277 @@
+#include "output/restart.hpp"
+
+#include "core/errors.hpp"
+#include "core/version.hpp"
+#include "output/h5_file.hpp"
+#include "output/results_layout.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+
+namespace talus {
+namespace {
+
+/// Breaks the build when a member is added that `transfer` does not know.
+[[maybe_unused]] void every_member_is_transferred(const State& state, const Contact& contact) {
+    [[maybe_unused]] const auto& [time, stage_time, step, total_steps, stage, halvings, motion, load, contacts, removed,
+                                  release, start_position, start_angle, ledger] = state;
+    [[maybe_unused]] const auto& [position, angle, velocity, spin] = motion;
+    [[maybe_unused]] const auto& [list, on_a, on_b, broken] = contacts;
+    [[maybe_unused]] const auto& [kinetic0, gravity, loads, work, local_damping, driven, friction, contact_damping,
+                                  released] = ledger;
+    [[maybe_unused]] const auto& [part_a, part_b, joint, face, edge_a, edge_b, touching, slipped, sliding, alive, length,
+                                  overlap, normal_force, shear_force, slip, slip_sum, dilation, point, normal] = contact;
+}
+
+template <class T>
+struct Rows;  // how items of type T lie in a table: numbers per row, and their way there and back
+
+template <class T>
+requires std::is_arithmetic_v<T>
+struct Rows<T> {
+    using Number = T;
+    static constexpr int width = 1;
+    static void put(const T& item, std::vector<T>& flat) { flat.push_back(item); }
+    static void get(T& item, const T* row) { item = *row; }
+};
+
+template <>
+struct Rows<Vec2> {
+    using Number = double;
+    static constexpr int width = 2;
+    static void put(const Vec2& v, std::vector<double>& flat) { flat.insert(flat.end(), {v.x(), v.y()}); }
+    static void get(Vec2& v, const double* row) { v = {row[0], row[1]}; }
+};
+
+template <>
+struct Rows<Force> {
+    using Number = double;
+    static constexpr int width = 3;
+    static void put(const Force& f, std::vector<double>& flat) {
+        flat.insert(flat.end(), {f.force.x(), f.force.y(), f.torque});
+    }
+    static void get(Force& f, const double* row) { f = {{row[0], row[1]}, row[2]}; }
+};
+
+class Writing {
+public:
+    explicit Writing(h5::File& file) : file_(file) {}
+
+    template <class T>
+    void one(const char* name, const char* unit, const T& value) {
+        list(name, unit, std::vector<T>{value});
+    }
+    template <class T>
+    void list(const char* name, const char* unit, const std::vector<T>& items) {
+        std::vector<typename Rows<T>::Number> flat;
+        for (const T& item : items) Rows<T>::put(item, flat);
+        write<T>(name, unit, flat, items.size());
+    }
+    template <class S, class T>
+    void column(const char* name, const char* unit, const std::vector<S>& items, T S::*member) {
+        std::vector<typename Rows<T>::Number> flat;
+        for (const S& item : items) Rows<T>::put(item.*member, flat);
+        write<T>(name, unit, flat, items.size());
+    }
+
+private:
+    template <class T>
+    void write(const char* name, const char* unit, const std::vector<typename Rows<T>::Number>& flat, std::size_t rows) {
+        h5::Shape shape{static_cast<std::int64_t>(rows)};
+        if (Rows<T>::width > 1) shape.push_back(Rows<T>::width);
+        file_.write<typename Rows<T>::Number>(std::string("/state/") + name, flat, shape,
+                                              {unit, Rows<T>::width > 1 ? "rows x numbers" : "rows"});
+    }
+    h5::File& file_;
+};
+
+class Reading {
+public:
+    explicit Reading(const h5::File& file) : file_(file) {}
+
+    template <class T>
+    void one(const char* name, const char*, T& value) {
+        std::vector<T> items;
+        list(name, "", items);
+        if (items.size() != 1) throw InputError(file_.path() + ": damaged restart file, " + name + " is not one number");
+        value = items[0];
+    }
+    template <class T>
+    void list(const char* name, const char*, std::vector<T>& items) {
+        const auto flat = read<T>(name);
+        items.resize(flat.size() / Rows<T>::width);
+        for (std::size_t i = 0; i < items.size(); ++i) Rows<T>::get(items[i], &flat[i * Rows<T>::width]);
+    }
+    template <class S, class T>
+    void column(const char* name, const char*, std::vector<S>& items, T S::*member) {
+        const auto flat = read<T>(name);
+        if (items.empty()) items.resize(flat.size() / Rows<T>::width);
+        if (flat.size() != items.size() * Rows<T>::width)
+            throw InputError(file_.path() + ": damaged restart file, the lengths of the contact columns differ");
+        for (std::size_t i = 0; i < items.size(); ++i) Rows<T>::get(items[i].*member, &flat[i * Rows<T>::width]);
+    }
+
+private:
+    template <class T>
+    std::vector<typename Rows<T>::Number> read(const char* name) const {
+        return file_.read<typename Rows<T>::Number>(std::string("/state/") + name);
+    }
+    const h5::File& file_;
+};
+
+template <class Archive, class List>
+void transfer_contacts(Archive& to, List& list) {
+    to.column("contacts/part_a", "1", list, &Contact::part_a);
+    to.column("contacts/part_b", "1", list, &Contact::part_b);
+    to.column("contacts/joint", "1", list, &Contact::joint);
+    to.column("contacts/face", "1", list, &Contact::face);
+    to.column("contacts/edge_a", "1", list, &Contact::edge_a);
+    to.column("contacts/edge_b", "1", list, &Contact::edge_b);
+    to.column("contacts/touching", "1", list, &Contact::touching);
+    to.column("contacts/slipped", "1", list, &Contact::slipped);
+    to.column("contacts/sliding", "1", list, &Contact::sliding);
+    to.column("contacts/alive", "1", list, &Contact::alive);
+    to.column("contacts/length", "m", list, &Contact::length);
+    to.column("contacts/overlap", "m", list, &Contact::overlap);
+    to.column("contacts/normal_force", "N", list, &Contact::normal_force);
+    to.column("contacts/shear_force", "N", list, &Contact::shear_force);
+    to.column("contacts/slip", "m", list, &Contact::slip);
+    to.column("contacts/slip_sum", "m", list, &Contact::slip_sum);
+    to.column("contacts/dilation", "m", list, &Contact::dilation);
+    to.column("contacts/point", "m", list, &Contact::point);
+    to.column("contacts/normal", "1", list, &Contact::normal);
+}
+
+template <class Archive, class AnyState>
+void transfer(Archive& to, AnyState& state) {
+    to.one("time", "s", state.time);
+    to.one("stage_time", "s", state.stage_time);
+    to.one("step", "1", state.step);
+    to.one("total_steps", "1", state.total_steps);
+    to.one("stage", "1", state.stage);
+    to.one("step_halvings", "1", state.step_halvings);
+    to.list("motion/position", "m", state.motion.position);
+    to.list("motion/angle", "rad", state.motion.angle);
+    to.list("motion/velocity", "m/s", state.motion.velocity);
+    to.list("motion/spin", "rad/s", state.motion.spin);
+    to.list("load", "N, N m", state.load);
+    transfer_contacts(to, state.contacts.list);
+    to.list("contacts/on_a", "N, N m", state.contacts.on_a);
+    to.list("contacts/on_b", "N, N m", state.contacts.on_b);
+    to.list("contacts/broken", "1", state.contacts.broken);
+    to.list("removed", "1", state.removed);
+    to.list("release", "N, N m", state.release);
+    to.list("start_position", "m", state.start_position);
+    to.list("start_angle", "rad", state.start_angle);
+    to.one("ledger/kinetic0", "J", state.ledger.kinetic0);
+    to.one("ledger/gravity", "J", state.ledger.gravity);
+    to.one("ledger/loads", "J", state.ledger.loads);
+    to.one("ledger/contact", "J", state.ledger.contact);
+    to.one("ledger/local_damping", "J", state.ledger.local_damping);
+    to.one("ledger/driven", "J", state.ledger.driven);
+    to.one("ledger/friction", "J", state.ledger.friction);
+    to.one("ledger/contact_damping", "J", state.ledger.contact_damping);
+    to.one("ledger/released", "J", state.ledger.released);
+}
+
+State with_contacts_alive(const State& state) {
+    State kept = state;
+    Contacts& contacts = kept.contacts;
+    contacts.list.clear(), contacts.on_a.clear(), contacts.on_b.clear();
+    for (std::size_t i = 0; i < state.contacts.list.size(); ++i) {
+        if (!state.contacts.list[i].alive) continue;
+        contacts.list.push_back(state.contacts.list[i]);
+        contacts.on_a.push_back(state.contacts.on_a[i]);
+        contacts.on_b.push_back(state.contacts.on_b[i]);
+    }
+    return kept;
+}
+
+void write_info(h5::File& file, const RestartInfo& info) {
+    file.make_group("/restart");
+    file.set("/restart", "schema_version", std::int64_t{restart_schema});
+    file.set("/restart", "scenario_file", info.scenario_file);
+    file.set("/restart", "scenario_hash", hash_text(info.scenario_hash));
+    file.set("/restart", "frames", info.frames);
+    file.write_text("/restart/scenario", info.scenario_text);
+    file.write_texts("/restart/overrides", info.overrides, "overrides");
+    std::vector<std::string> names;
+    std::vector<std::int64_t> rows;
+    for (const auto& [name, count] : info.history_rows) names.push_back(name), rows.push_back(count);
+    file.write_texts("/restart/history_names", names, "histories");
+    file.write<std::int64_t>("/restart/history_rows", rows, {static_cast<std::int64_t>(rows.size())}, {"1", "histories"});
+}
+
+h5::File open_restart(const std::string& path) {
+    h5::File file = h5::File::open(path);
+    if (!file.has_attribute("/restart", "schema_version")) throw InputError(path + ": is not a restart file of Talus");
+    const std::int64_t found = file.integer("/restart", "schema_version");
+    if (found != restart_schema)
+        throw InputError(path + ": written in version " + std::to_string(found) +
+                         " of the restart format, this program reads version " + std::to_string(restart_schema));
+    return file;
+}
+
+bool within(int value, int first, std::size_t end) { return value >= first && value < static_cast<int>(end); }
+
+bool fits(const State& s, const Model& model) {
+    const std::size_t blocks = model.blocks.mass.size(), contacts = s.contacts.list.size();
+    const auto one_per_block = [&](const auto&... lists) { return ((lists.size() == blocks) && ...); };
+    const auto known = [&](const Contact& c) {
+        return within(c.part_a, 0, model.parts.block.size()) && within(c.part_b, 0, model.parts.block.size()) &&
+               within(c.joint, 0, model.joints.size()) && within(c.face, -1, model.faces.size()) &&
+               within(c.edge_a, -1, model.corners.arm.size()) && within(c.edge_b, -1, model.corners.arm.size());
+    };
+    return one_per_block(s.motion.position, s.motion.angle, s.motion.velocity, s.motion.spin, s.load, s.removed,
+                         s.start_position, s.start_angle) &&
+           (s.release.empty() || s.release.size() == blocks) && s.contacts.on_a.size() == contacts &&
+           s.contacts.on_b.size() == contacts && s.contacts.broken.size() == static_cast<std::size_t>(model.cells()) &&
+           std::all_of(s.contacts.list.begin(), s.contacts.list.end(), known);
+}
+
+}  // namespace
+
+void write_restart(const std::string& path, const RestartInfo& info, const State& state) {
+    const std::string unfinished = path + ".part";
+    try {
+        {
+            h5::File file = h5::File::create(unfinished);
+            write_info(file, info);
+            Writing archive(file);
+            const State kept = with_contacts_alive(state);
+            transfer(archive, kept);
+            file.flush();
+        }
+        std::filesystem::rename(unfinished, path);
+    } catch (const std::exception& error) {
+        std::remove(unfinished.c_str());
+        throw OutputError(error.what());
+    }
+}
+
+RestartInfo read_restart_info(const std::string& path) {
+    const h5::File file = open_restart(path);
+    RestartInfo info;
+    info.scenario_file = file.text("/restart", "scenario_file");
+    info.scenario_text = file.read_text("/restart/scenario");
+    info.scenario_hash = std::strtoull(file.text("/restart", "scenario_hash").c_str(), nullptr, 16);
+    info.overrides = file.read_texts("/restart/overrides");
+    info.frames = file.integer("/restart", "frames");
+    const auto names = file.read_texts("/restart/history_names");
+    const auto rows = file.read<std::int64_t>("/restart/history_rows");
+    for (std::size_t i = 0; i < names.size() && i < rows.size(); ++i) info.history_rows.emplace_back(names[i], rows[i]);
+    return info;
+}
+
+State read_restart(const std::string& path, const Model& model) {
+    const h5::File file = open_restart(path);
+    State state;
+    Reading archive(file);
+    transfer(archive, state);
+    if (!fits(state, model)) throw InputError(path + ": does not fit the scenario: other blocks, joints or faces");
+    return state;
+}
+
+}  // namespace talus
