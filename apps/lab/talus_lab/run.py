@@ -62,7 +62,7 @@ class Run:
 
     @property
     def status(self) -> str:
-        """running | complete | interrupted | diverged | stopped"""
+        """in progress (also after a kill) | complete | interrupted | diverged | stopped"""
         return str(self.attributes.get("status", ""))
 
     @cached_property
@@ -162,7 +162,8 @@ class Run:
     # Forces, energies, histories
     def contacts(self, frame: int) -> Mapping[str, np.ndarray]:
         """[contacts of this frame] each: block_a, block_b, joint, x, y [m], nx, ny, normal_force and shear_force [N per m],
-        normal_stress, shear_stress [Pa], opening, slip, length [m], utilisation, state. Empty if none were recorded."""
+        normal_stress, shear_stress [Pa], opening, slip, length [m], utilisation, state (index into JOINT_STATES).
+        Empty if the scenario says so."""
         with self._file() as file:
             if "talus/contacts/first_row" not in file:
                 return MappingProxyType({})
@@ -181,10 +182,13 @@ class Run:
 
     @cached_property
     def histories(self) -> Mapping[str, Mapping[str, np.ndarray]]:
-        """By name: a table of columns of equal length, `time` [s] first among them."""
+        """By name: a table of columns of equal length, `time` [s] and then those of the scenario, in its order."""
+        tables = {}
         with self._file() as file:
-            names = list(file["talus/histories"])
-        return MappingProxyType({name: MappingProxyType(self._table(f"talus/histories/{name}")) for name in names})
+            for name, group in file["talus/histories"].items():
+                columns = ["time", *_texts(group.attrs["columns"])]
+                tables[name] = MappingProxyType({column: _frozen(group[column][()]) for column in columns})
+        return MappingProxyType(tables)
 
     # Reading
     def _file(self) -> h5py.File:

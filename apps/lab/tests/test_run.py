@@ -32,6 +32,12 @@ def test_contacts_are_those_of_the_frame(result):
     assert run.contacts(2)["x"] == pytest.approx(ORIGIN[0] + np.array([0.1, 3.0]))
 
 
+def test_histories_keep_the_order_of_their_columns(result):
+    history = talus_lab.open(result).histories["slide"]
+    assert list(history) == ["time", "x", "a"]
+    assert history["x"] == pytest.approx(SLIDE)
+
+
 def test_frames_that_were_never_finished_are_not_there(tmp_path):
     run = talus_lab.open(write_result(tmp_path / "killed.h5", frames=2))
     assert list(run.times) == [0, 0.5]
