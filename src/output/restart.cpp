@@ -15,14 +15,14 @@ namespace {
 
 /// Breaks the build when a member is added that `transfer` does not know.
 [[maybe_unused]] void every_member_is_transferred(const State& state, const Contact& contact) {
-    [[maybe_unused]] const auto& [time, stage_time, step, total_steps, stage, halvings, motion, load, contacts, removed,
-                                  release, start_position, start_angle, ledger] = state;
+    [[maybe_unused]] const auto& [time, stage_time, calm, step, total_steps, stage, stage_step, halvings, motion, load, damping,
+                                  contacts, removed, release, start_position, start_angle, ledger] = state;
     [[maybe_unused]] const auto& [position, angle, velocity, spin] = motion;
     [[maybe_unused]] const auto& [list, on_a, on_b, broken] = contacts;
-    [[maybe_unused]] const auto& [kinetic0, gravity, loads, work, local_damping, driven, friction, contact_damping,
+    [[maybe_unused]] const auto& [total0, kinetic0, gravity, loads, work, local_damping, driven, friction, contact_damping,
                                   released] = ledger;
     [[maybe_unused]] const auto& [part_a, part_b, joint, face, edge_a, edge_b, touching, slipped, sliding, alive, length,
-                                  overlap, normal_force, shear_force, slip, slip_sum, dilation, point, normal] = contact;
+                                  overlap, normal_force, shear_force, strength, slip, slip_sum, dilation, point, normal] = contact;
 }
 
 template <class T>
@@ -137,6 +137,7 @@ void transfer_contacts(Archive& to, List& list) {
     to.column("contacts/overlap", "m", list, &Contact::overlap);
     to.column("contacts/normal_force", "N", list, &Contact::normal_force);
     to.column("contacts/shear_force", "N", list, &Contact::shear_force);
+    to.column("contacts/strength", "N", list, &Contact::strength);
     to.column("contacts/slip", "m", list, &Contact::slip);
     to.column("contacts/slip_sum", "m", list, &Contact::slip_sum);
     to.column("contacts/dilation", "m", list, &Contact::dilation);
@@ -148,15 +149,18 @@ template <class Archive, class AnyState>
 void transfer(Archive& to, AnyState& state) {
     to.one("time", "s", state.time);
     to.one("stage_time", "s", state.stage_time);
+    to.one("calm_checks", "1", state.calm_checks);
     to.one("step", "1", state.step);
     to.one("total_steps", "1", state.total_steps);
     to.one("stage", "1", state.stage);
+    to.one("stage_step", "s", state.stage_step);
     to.one("step_halvings", "1", state.step_halvings);
     to.list("motion/position", "m", state.motion.position);
     to.list("motion/angle", "rad", state.motion.angle);
     to.list("motion/velocity", "m/s", state.motion.velocity);
     to.list("motion/spin", "rad/s", state.motion.spin);
     to.list("load", "N, N m", state.load);
+    to.list("damping", "N, N m", state.damping);
     transfer_contacts(to, state.contacts.list);
     to.list("contacts/on_a", "N, N m", state.contacts.on_a);
     to.list("contacts/on_b", "N, N m", state.contacts.on_b);
@@ -165,6 +169,7 @@ void transfer(Archive& to, AnyState& state) {
     to.list("release", "N, N m", state.release);
     to.list("start_position", "m", state.start_position);
     to.list("start_angle", "rad", state.start_angle);
+    to.one("ledger/total0", "J", state.ledger.total0);
     to.one("ledger/kinetic0", "J", state.ledger.kinetic0);
     to.one("ledger/gravity", "J", state.ledger.gravity);
     to.one("ledger/loads", "J", state.ledger.loads);

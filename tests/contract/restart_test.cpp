@@ -18,15 +18,15 @@ namespace {
 class Bits {
 public:
     explicit Bits(const State& s) {
-        add(s.time, s.stage_time, s.step, s.total_steps, s.stage, s.step_halvings);
+        add(s.time, s.stage_time, s.calm_checks, s.step, s.total_steps, s.stage, s.stage_step, s.step_halvings);
         for (const auto* list : {&s.motion.position, &s.motion.velocity, &s.start_position}) each(*list);
         for (const auto* list : {&s.motion.angle, &s.motion.spin, &s.start_angle}) each(*list);
-        for (const auto* list : {&s.load, &s.release, &s.contacts.on_a, &s.contacts.on_b}) each(*list);
+        for (const auto* list : {&s.load, &s.damping, &s.release, &s.contacts.on_a, &s.contacts.on_b}) each(*list);
         each(s.removed);
         each(s.contacts.broken);
         each(s.contacts.list);
         const Ledger& l = s.ledger;
-        add(l.kinetic0, l.gravity, l.loads, l.contact, l.local_damping, l.driven, l.friction, l.contact_damping, l.released);
+        add(l.total0, l.kinetic0, l.gravity, l.loads, l.contact, l.local_damping, l.driven, l.friction, l.contact_damping, l.released);
     }
     bool operator==(const Bits&) const = default;
 

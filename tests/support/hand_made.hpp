@@ -106,11 +106,12 @@ inline State random_state(const Model& m, std::uint64_t seed, int contacts) {
     State s = at_rest(m);
     s.time = number(), s.stage_time = number();
     s.step = static_cast<std::int64_t>(random.bits() >> 2), s.total_steps = static_cast<std::int64_t>(random.bits() >> 2);
-    s.stage = below(9), s.step_halvings = below(9);
+    s.stage = below(9), s.step_halvings = below(9), s.calm_checks = below(3), s.stage_step = number();
     for (BlockId b = 0; b < m.blocks.size(); ++b) {
         s.motion.position[b] = vector(), s.motion.velocity[b] = vector(), s.start_position[b] = vector();
         s.motion.angle[b] = number(), s.motion.spin[b] = number(), s.start_angle[b] = number();
         s.load[b] = force(), s.removed[b] = flag(), s.release.push_back(force());
+        s.damping.push_back(force());
     }
     for (int i = 0; i < contacts; ++i) {
         Contact c{};
@@ -120,13 +121,13 @@ inline State random_state(const Model& m, std::uint64_t seed, int contacts) {
         c.edge_a = below(m.corners.size() + 1) - 1, c.edge_b = below(m.corners.size() + 1) - 1;
         c.touching = flag(), c.slipped = flag(), c.sliding = flag(), c.alive = i % 4 != 3;
         c.length = std::abs(number()), c.overlap = number(), c.normal_force = number(), c.shear_force = number();
-        c.slip = number(), c.slip_sum = number(), c.dilation = number(), c.point = vector(), c.normal = vector();
+        c.strength = number(), c.slip = number(), c.slip_sum = number(), c.dilation = number(), c.point = vector(), c.normal = vector();
         s.contacts.list.push_back(c);
         s.contacts.on_a.push_back(force()), s.contacts.on_b.push_back(force());
     }
     for (auto& cell : s.contacts.broken) cell = static_cast<std::uint8_t>(below(3));
     Ledger& l = s.ledger;
-    for (double* e : {&l.kinetic0, &l.gravity, &l.loads, &l.contact, &l.local_damping, &l.driven, &l.friction,
+    for (double* e : {&l.total0, &l.kinetic0, &l.gravity, &l.loads, &l.contact, &l.local_damping, &l.driven, &l.friction,
                       &l.contact_damping, &l.released})
         *e = number();
     return s;
