@@ -227,9 +227,10 @@ std::vector<CutLine> joint_lines(const RockSpec& rock) {
         const std::vector<CutLine> more = joint_set_lines(set, grown, source++);
         lines.insert(lines.end(), more.begin(), more.end());
     }
-    for (const CrackSpec& crack : rock.cracks) add_polyline(crack.points, tip_reach(rock), source++, lines);
+    const double reach = tip_reach(rock);
+    for (const CrackSpec& crack : rock.cracks) add_polyline(crack.points, reach, reach, source++, lines);
     if (rock.traces) {
-        const TraceLines traces = trace_lines(*rock.traces, rock.outline, tip_reach(rock), source);
+        const TraceLines traces = trace_lines(*rock.traces, rock.outline, reach, source);
         lines.insert(lines.end(), traces.lines.begin(), traces.lines.end());
     }
     return lines;

@@ -95,31 +95,46 @@ void join_corners(std::vector<Polyline>& traces, const Polygon& outline, double 
         }
 }
 
+using Place = std::pair<double, double>;
+Place place(const Vec2& p) { return {p.x(), p.y()}; }
+
+/// How many times each corner is passed by any trace.
+std::map<Place, int> visits(const std::vector<Polyline>& traces) {
+    std::map<Place, int> count;
+    for (const Polyline& points : traces)
+        for (const Vec2& p : points) ++count[place(p)];
+    return count;
+}
+
 }  // namespace
 
-int add_polyline(std::vector<Vec2> points, double extend, int source, std::vector<CutLine>& lines) {
+void add_polyline(std::vector<Vec2> points, double at_first, double at_last, int source, std::vector<CutLine>& lines) {
     points.erase(std::unique(points.begin(), points.end()), points.end());
-    if (points.size() < 2) return 0;
-    const bool open = points.front() != points.back();
-    if (open) {
+    if (points.size() < 2) return;
+    if (points.front() != points.back()) {
         const Vec2 first = (points[0] - points[1]).normalized();
         const Vec2 last = (points.back() - points[points.size() - 2]).normalized();
-        points.front() += extend * first;
-        points.back() += extend * last;
+        points.front() += at_first * first;
+        points.back() += at_last * last;
     }
     for (std::size_t i = 0; i + 1 < points.size(); ++i) lines.push_back({points[i], points[i + 1], source});
-    return open ? 2 : 0;
 }
 
 TraceLines trace_lines(const TraceMapSpec& map, const Polygon& outline, double reach, int source) {
     TraceLines result;
     std::vector<Polyline> traces = map.lines;
     if (const double snap = std::max(map.snap, reach); snap > 0.0) join_corners(traces, outline, snap, result);
-    for (Polyline& points : traces) {
-        const std::size_t before = result.lines.size();
-        const int tips = add_polyline(std::move(points), std::max(map.extend, reach), source, result.lines);
-        result.traces += result.lines.size() > before;
-        if (map.extend > 0.0) result.tips_extended += tips;
+    const std::map<Place, int> count = visits(traces);
+    for (const Polyline& points : traces) {
+        if (points.size() < 2) continue;
+        ++result.traces;
+        const auto extension = [&](const Vec2& tip) {
+            const bool extended = count.at(place(tip)) == 1 && map.extend > reach;
+            result.tips_extended += extended;
+            return extended ? map.extend : reach;
+        };
+        const double at_first = extension(points.front()), at_last = extension(points.back());
+        add_polyline(points, at_first, at_last, source, result.lines);
     }
     return result;
 }

@@ -18,13 +18,13 @@ struct TraceLines {
 };
 
 /// Segments of a trace map, all with the given source. First corners closer than `snap` to one of the outline or to an
-/// earlier one are moved onto it and segments that pass a corner by less than `snap` are led through it; then both tips of
-/// every trace are extended along their last segments by `extend`, at least by `reach` (m, also the least `snap`), so that a
-/// trace that ends on another line meets it in spite of rounding.
+/// earlier one are moved onto it, and segments that pass a corner by less than `snap` are led through it. Then the free
+/// tips of the traces, those at which no other trace passes, are extended along their last segments by `extend`; a trace
+/// that ends at another one was mapped so and goes no further. All tips are drawn out by `reach` (m, also the least
+/// `snap`), so that a trace that ends on the outline meets it in spite of rounding.
 TraceLines trace_lines(const TraceMapSpec& map, const Polygon& outline, double reach, int source);
 
-/// Adds the segments of a polyline whose two tips are moved outwards by `extend`; a closed one has no tips. Returns the
-/// number of tips that were moved.
-int add_polyline(std::vector<Vec2> points, double extend, int source, std::vector<CutLine>& lines);
+/// Adds the segments of a polyline whose tips are moved outwards by so much (m); a closed one has no tips.
+void add_polyline(std::vector<Vec2> points, double at_first, double at_last, int source, std::vector<CutLine>& lines);
 
 }  // namespace talus

@@ -76,8 +76,8 @@ struct CrackSpec {  // one given polyline
 struct TraceMapSpec {  // mapped traces from a GeoJSON or CSV file
     std::string file;               // relative to the scenario file
     std::vector<std::vector<Vec2>> lines;  // m, the polylines read from it
-    double extend = 0.0;            // m, added at both tips of every trace
-    double snap = 0.0;              // m, corners closer than this become one
+    double extend = 0.0;            // m, added at the tips of traces that end at no other trace
+    double snap = 0.0;              // m, corners closer than this become one, traces passing by are led through
     std::string joint;
     Where where;
 };

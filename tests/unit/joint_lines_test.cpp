@@ -253,22 +253,30 @@ TEST_CASE("a crack that ends on the outline cuts it, also where the coordinates 
     }
 }
 
-TEST_CASE("traces are snapped to earlier corners and extended at both tips") {
+TEST_CASE("traces are snapped to earlier corners and extended at tips that end at no other trace") {
     TraceMapSpec map;
     map.extend = 0.5;
     map.snap = 0.1;
-    map.lines = {{{0, 0}, {2, 0}, {4, 0}}, {{4.03, 0.04}, {4, 3}}, {{9, 9}, {9.05, 9}}, {{6, 6}, {7, 6}, {7, 7}, {6, 6}}};
+    map.lines = {{{0, 0}, {2, 0}, {4, 0}},          // free at the left only, for the next one starts at its end
+                 {{4.03, 0.04}, {4, 3}},            // free at the top
+                 {{9, 9}, {9.05, 9}},               // shrinks to a point
+                 {{6, 6}, {7, 6}, {7, 7}, {6, 6}},  // closed
+                 {{1, -2}, {1, 0.02}}};             // free at the bottom, ends on the first one
     const TraceLines result = trace_lines(map, square(20), 0.0, 2);
-    CHECK(result.corners_snapped == 2);  // the second trace starts at the end of the first; the third one shrinks to a point
-    CHECK(result.traces == 3);
-    CHECK(result.tips_extended == 4);  // the closed one has none
-    REQUIRE(result.lines.size() == 2 + 1 + 3);
-    CHECK((result.lines[0].from - Vec2(-0.5, 0)).norm() < 1e-15);
-    CHECK((result.lines[1].to - Vec2(4.5, 0)).norm() < 1e-15);
-    CHECK((result.lines[2].from - Vec2(4, -0.5)).norm() < 1e-15);
-    CHECK((result.lines[2].to - Vec2(4, 3.5)).norm() < 1e-15);
-    CHECK(result.lines[3].from == Vec2(6, 6));
-    for (const CutLine& line : result.lines) CHECK(line.source == 2);
+    CHECK(result.corners_snapped == 2);
+    CHECK(result.junctions == 1);
+    CHECK(result.traces == 4);
+    CHECK(result.tips_extended == 3);
+    const std::vector<std::pair<Vec2, Vec2>> expected{{{-0.5, 0}, {1, 0.02}}, {{1, 0.02}, {2, 0}},   {{2, 0}, {4, 0}},
+                                                      {{4, 0}, {4, 3.5}},     {{6, 6}, {7, 6}},      {{7, 6}, {7, 7}},
+                                                      {{7, 7}, {6, 6}},       {{1, -2.5}, {1, 0.02}}};
+    REQUIRE(result.lines.size() == expected.size());
+    for (std::size_t i = 1; i < expected.size(); ++i) {
+        CHECK((result.lines[i].from - expected[i].first).norm() < 1e-15);
+        CHECK((result.lines[i].to - expected[i].second).norm() < 1e-15);
+        CHECK(result.lines[i].source == 2);
+    }
+    CHECK((result.lines[0].from - (Vec2(0, 0) - 0.5 * Vec2(1, 0.02).normalized())).norm() < 1e-15);  // the bent segment
 }
 
 TEST_CASE("a trace drawn past a corner within `snap` is led through it, so that no sliver is left") {
