@@ -100,6 +100,7 @@ void Builder::cut_rock_into_shapes() {
     scene_.report.trace_count = rock_.trace_count;
     scene_.report.tips_extended = rock_.tips_extended;
     scene_.report.corners_snapped = rock_.corners_snapped;
+    scene_.report.trace_junctions = rock_.trace_junctions;
 }
 
 void Builder::shape_single_blocks() {

@@ -13,7 +13,7 @@ namespace talus {
 
 struct BuildReport {                       // what `talus check` tells
     CutReport cut;
-    int trace_count = 0, tips_extended = 0, corners_snapped = 0;
+    int trace_count = 0, tips_extended = 0, corners_snapped = 0, trace_junctions = 0;
     std::vector<std::string> warnings;
     std::vector<int> faces_per_joint;      // [nj] touching part pairs by the joint they got, in the order of Model::joints
 };

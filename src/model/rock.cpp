@@ -2,6 +2,7 @@
 
 #include "model/joint_lines.hpp"
 #include "model/select.hpp"
+#include "model/trace_lines.hpp"
 
 namespace talus {
 namespace {
@@ -50,10 +51,11 @@ CutRock cut_rock(const RockSpec& rock, const std::vector<std::string>& material_
     result.outline = bounds(rock.outline);
     result.report = std::move(blocks.report);
     if (rock.traces) {
-        const TraceLines traces = trace_lines(*rock.traces, tip_reach(rock), 0);
+        const TraceLines traces = trace_lines(*rock.traces, rock.outline, tip_reach(rock), 0);
         result.trace_count = traces.traces;
         result.tips_extended = traces.tips_extended;
         result.corners_snapped = traces.corners_snapped;
+        result.trace_junctions = traces.junctions;
     }
     return result;
 }

@@ -17,7 +17,7 @@ struct CutRock {
     std::vector<std::string> joint_of_source;  // name of the joint of each joint set, crack, trace map; empty = by materials
     Box outline;                               // m, extremes of the outline
     CutReport report;
-    int trace_count = 0, tips_extended = 0, corners_snapped = 0;
+    int trace_count = 0, tips_extended = 0, corners_snapped = 0, trace_junctions = 0;
 };
 
 /// Cuts the rock along everything it names. material_names: for the indices in the shapes.
