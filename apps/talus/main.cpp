@@ -1,6 +1,5 @@
 #include "commands.hpp"
 
-#include "contact/search.hpp"
 #include "core/errors.hpp"
 #include "core/version.hpp"
 

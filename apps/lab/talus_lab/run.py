@@ -89,11 +89,11 @@ class Run:
 
     @cached_property
     def material_names(self) -> tuple[str, ...]:
-        return tuple(self._read("talus/materials/name"))
+        return tuple(self._read("talus/materials/name").tolist())
 
     @cached_property
     def joint_names(self) -> tuple[str, ...]:
-        return tuple(self._read("talus/joints/name"))
+        return tuple(self._read("talus/joints/name").tolist())
 
     @cached_property
     def part_block(self) -> np.ndarray:
@@ -186,7 +186,7 @@ class Run:
         tables = {}
         with self._file() as file:
             for name, group in file["talus/histories"].items():
-                columns = ["time", *_texts(group.attrs["columns"])]
+                columns = ["time", *_texts(group.attrs["columns"]).tolist()]
                 tables[name] = MappingProxyType({column: _frozen(group[column][()]) for column in columns})
         return MappingProxyType(tables)
 
