@@ -131,7 +131,7 @@ void print_cost(Simulation& simulation) {
 }
 
 void write_geometry(const std::string& path, Simulation& simulation) {
-    Recorder recorder(choose_output_path(path, true), simulation, {});
+    Recorder recorder(choose_output_path(path, true), simulation, std::vector<std::string>{});
     recorder.write_frame(simulation);
     recorder.close("checked");
 }

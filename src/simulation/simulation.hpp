@@ -49,6 +49,8 @@ public:
     double recorded_time() const;    // s, length of the recorded stages as far as it is given
     bool reached_equilibrium() const { return equilibrium_; }
     Energies energies() const;
+    double energy_drift() const { return energies().total() - state_.ledger.total0; }  // J
+    std::int64_t steps_done() const { return steps_done_; }  // in this process
     double ledger_error() const;                           // J
     double max_speed() const { return speed_; }            // m/s, in the last step
     std::int64_t refreshes() const { return refreshes_; }  // how often the list of pairs was made anew
