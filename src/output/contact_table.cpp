@@ -6,22 +6,21 @@
 namespace talus {
 namespace {
 
-/// Intact share of the bond of a face, 0..1; 0 for contacts without bond.
-double bonded_share(const Model& model, const Contacts& contacts, const Contact& contact) {
-    if (contact.face < 0 || !model.faces[contact.face].bonded) return 0.0;
-    const auto first = contacts.broken.begin() + model.faces[contact.face].first_cell;
-    const int cells = model.joints[model.faces[contact.face].joint].cells;
-    return static_cast<double>(std::count(first, first + cells, 0)) / cells;
-}
-
 bool ever_bonded(const Model& model, const Contact& contact) {
     return contact.face >= 0 && model.faces[contact.face].bonded;
+}
+
+bool bonded(const Model& model, const Contacts& contacts, const Contact& contact) {
+    if (!ever_bonded(model, contact)) return false;
+    const JointFace& face = model.faces[contact.face];
+    const auto first = contacts.broken.begin() + face.first_cell;
+    return std::count(first, first + model.joints[face.joint].cells, 0) > 0;
 }
 
 }  // namespace
 
 ContactState contact_state(const Model& model, const Contacts& contacts, const Contact& contact) {
-    const bool bond = bonded_share(model, contacts, contact) > 0.0;
+    const bool bond = bonded(model, contacts, contact);
     if (!contact.touching && !bond) return ContactState::open;
     if (contact.sliding) return ContactState::sliding;
     if (bond) return ContactState::bonded;
@@ -29,20 +28,11 @@ ContactState contact_state(const Model& model, const Contacts& contacts, const C
     return contact.slipped ? ContactState::slipped : ContactState::elastic;
 }
 
-double shear_strength(const Model& model, const Contacts& contacts, const Contact& contact) {
-    const Joint& joint = model.joints[contact.joint];
-    const bool weak = contact.slipped && joint.weakens;
-    const double intact = ever_bonded(model, contact) ? bonded_share(model, contacts, contact) : (weak ? 0.0 : 1.0);
-    const double cohesion = intact * joint.cohesion + (1.0 - intact) * joint.cohesion_residual;
-    const double friction = weak ? joint.tan_friction_residual : joint.tan_friction;
-    return cohesion * contact.length + std::max(contact.normal_force, 0.0) * friction;
-}
-
 ContactTable contact_table(const Model& model, const State& state) {
     ContactTable table;
     for (const Contact& c : state.contacts.list) {
         if (!c.alive) continue;
-        const double strength = shear_strength(model, state.contacts, c), shear = std::abs(c.shear_force);
+        const double shear = std::abs(c.shear_force);
         const double per_length = c.length > 0.0 ? 1.0 / c.length : 0.0;
         table.block_a.push_back(model.parts.block[c.part_a]);
         table.block_b.push_back(model.parts.block[c.part_b]);
@@ -60,7 +50,7 @@ ContactTable contact_table(const Model& model, const State& state) {
         table.opening.push_back(static_cast<float>(-c.overlap));
         table.slip.push_back(static_cast<float>(c.slip));
         table.length.push_back(static_cast<float>(c.length));
-        table.utilisation.push_back(static_cast<float>(strength > 0.0 ? shear / strength : (shear > 0.0 ? 1.0 : 0.0)));
+        table.utilisation.push_back(static_cast<float>(c.strength > 0.0 ? shear / c.strength : 0.0));
         table.state.push_back(static_cast<std::uint8_t>(contact_state(model, state.contacts, c)));
     }
     return table;

@@ -15,17 +15,13 @@ enum class ContactState : std::uint8_t { elastic = 0, sliding = 1, slipped = 2, 
 /// slipped before, never slipped.
 ContactState contact_state(const Model& model, const Contacts& contacts, const Contact& contact);
 
-/// Shear force at which the joint slips: cohesion x length + normal force x tan(friction), N. Residual values where the
-/// joint has weakened; of a bonded face only the intact share of the length has its full cohesion.   [Mohr-Coulomb]
-double shear_strength(const Model& model, const Contacts& contacts, const Contact& contact);
-
 struct ContactTable {                                                   // n contacts that are alive, in key order
     std::vector<std::int32_t> block_a, block_b, part_a, part_b, joint;  // [n]
     std::vector<float> x, y, nx, ny;                 // [n] m, relative to the origin of the scene; unit normal from a to b
     std::vector<float> normal_force, shear_force;    // [n] N per m, compression > 0; along perp(normal) on b
     std::vector<float> normal_stress, shear_stress;  // [n] Pa, force / length
     std::vector<float> opening, slip, length;        // [n] m
-    std::vector<float> utilisation;                  // [n] |shear force| / shear strength
+    std::vector<float> utilisation;                  // [n] |shear force| / shear strength, as the law left it
     std::vector<std::uint8_t> state;                 // [n] ContactState
     std::int64_t size() const { return static_cast<std::int64_t>(joint.size()); }
 };

@@ -15,14 +15,15 @@ namespace {
 
 /// Breaks the build when a member is added that `transfer` does not know.
 [[maybe_unused]] void every_member_is_transferred(const State& state, const Contact& contact) {
-    [[maybe_unused]] const auto& [time, stage_time, calm, step, total_steps, stage, stage_step, halvings, motion, load, damping,
-                                  contacts, removed, release, start_position, start_angle, ledger] = state;
+    [[maybe_unused]] const auto& [time, stage_time, calm, step, total_steps, stage, stage_step, halvings, motion, load,
+                                  damping, contacts, removed, release, start_position, start_angle, ledger] = state;
     [[maybe_unused]] const auto& [position, angle, velocity, spin] = motion;
     [[maybe_unused]] const auto& [list, on_a, on_b, broken] = contacts;
     [[maybe_unused]] const auto& [total0, kinetic0, gravity, loads, work, local_damping, driven, friction, contact_damping,
                                   released] = ledger;
     [[maybe_unused]] const auto& [part_a, part_b, joint, face, edge_a, edge_b, touching, slipped, sliding, alive, length,
-                                  overlap, normal_force, shear_force, strength, slip, slip_sum, dilation, point, normal] = contact;
+                                  overlap, normal_force, shear_force, strength, slip, slip_sum, dilation, point, normal] =
+        contact;
 }
 
 template <class T>
@@ -231,8 +232,9 @@ bool fits(const State& s, const Model& model) {
     };
     return one_per_block(s.motion.position, s.motion.angle, s.motion.velocity, s.motion.spin, s.load, s.removed,
                          s.start_position, s.start_angle) &&
-           (s.release.empty() || s.release.size() == blocks) && s.contacts.on_a.size() == contacts &&
-           s.contacts.on_b.size() == contacts && s.contacts.broken.size() == static_cast<std::size_t>(model.cells()) &&
+           (s.release.empty() || s.release.size() == blocks) && (s.damping.empty() || s.damping.size() == blocks) &&
+           s.contacts.on_a.size() == contacts && s.contacts.on_b.size() == contacts &&
+           s.contacts.broken.size() == static_cast<std::size_t>(model.cells()) &&
            std::all_of(s.contacts.list.begin(), s.contacts.list.end(), known);
 }
 

@@ -95,9 +95,13 @@ std::vector<float> points_now(const Model& model, const State& state) {
     return points;
 }
 
-/// Force along the axes that are free to move: the others carry the reaction of a support.
+/// Force along the axes that are free to move: the others carry the reaction of a support. Without local damping, which
+/// would hide part of it.
 double unbalanced_force(const Model& model, const State& state, BlockId b) {
-    const Vec2 &inv_mass = model.blocks.inv_mass[b], &force = state.load[b].force;
+    if (state.removed[b]) return 0.0;
+    const Vec2& inv_mass = model.blocks.inv_mass[b];
+    Vec2 force = state.load[b].force;
+    if (!state.damping.empty()) force -= state.damping[b].force;
     return std::hypot(inv_mass.x() > 0.0 ? force.x() : 0.0, inv_mass.y() > 0.0 ? force.y() : 0.0);
 }
 

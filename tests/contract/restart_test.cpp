@@ -26,7 +26,8 @@ public:
         each(s.contacts.broken);
         each(s.contacts.list);
         const Ledger& l = s.ledger;
-        add(l.total0, l.kinetic0, l.gravity, l.loads, l.contact, l.local_damping, l.driven, l.friction, l.contact_damping, l.released);
+        add(l.total0, l.kinetic0, l.gravity, l.loads, l.contact, l.local_damping, l.driven, l.friction, l.contact_damping,
+            l.released);
     }
     bool operator==(const Bits&) const = default;
 
@@ -49,7 +50,7 @@ private:
     void one(const Force& f) { add(f.force, f.torque); }
     void one(const Contact& c) {
         add(c.part_a, c.part_b, c.joint, c.face, c.edge_a, c.edge_b, c.touching, c.slipped, c.sliding, c.alive, c.length);
-        add(c.overlap, c.normal_force, c.shear_force, c.slip, c.slip_sum, c.dilation, c.point, c.normal);
+        add(c.overlap, c.normal_force, c.shear_force, c.strength, c.slip, c.slip_sum, c.dilation, c.point, c.normal);
     }
     std::string bytes_;
 };
