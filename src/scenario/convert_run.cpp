@@ -1,0 +1,90 @@
+#include "scenario/check.hpp"
+#include "scenario/convert.hpp"
+#include "scenario/specification.hpp"
+
+#include <set>
+
+namespace talus {
+namespace {
+
+Until convert_until(const Cursor& at) { return {at["time"].maybe_number(), at["equilibrium"].maybe_number()}; }
+
+DampingSpec convert_damping(const Cursor& at) { return {at["local"].number(), at["contact"].number()}; }
+
+// Keys of `change` go over those of `joint`, table by table.
+void merge(Value& joint, const Value& change) {
+    for (const Entry& entry : change.entries) {
+        Value* old = joint.find(entry.key);
+        if (old && old->is(Value::Kind::map) && entry.value.is(Value::Kind::map))
+            merge(*old, entry.value);
+        else if (!entry.value.is(Value::Kind::none))
+            joint.set(entry.key, entry.value, entry.line);
+    }
+}
+
+/// The joints that a stage changes, complete. `joints` holds their keys so far and is brought up to date.
+std::vector<JointSpec> convert_changes(const Cursor& changes, Value& joints) {
+    std::vector<JointSpec> all;
+    for (const auto& [name, change] : changes.names()) {
+        Value* joint = joints.find(name);
+        if (!joint) {
+            Value text = Value::of_text(name);
+            text.kind = Value::Kind::text;
+            Cursor(text, change.path(), change.where().line, change.reading()).name_of("joint", change.reading().joints);
+            continue;
+        }
+        merge(*joint, change.value());
+        all.push_back(convert_joint(name, Cursor(*joint, change.path(), change.where().line, change.reading())));
+    }
+    return all;
+}
+
+StageSpec convert_stage(const Cursor& at, Value& joints) {
+    StageSpec stage;
+    stage.name = at["name"].text();
+    stage.settle = at["settle"].yes();
+    stage.reset = at["reset"].yes();
+    for (const Cursor& selector : at["delete"].items()) stage.remove.push_back(convert_selector(selector));
+    stage.release = at["release"].number();
+    stage.joints = convert_changes(at["change"]["joints"], joints);
+    if (at["gravity"].given()) stage.gravity = at["gravity"].vector_table();
+    stage.loads = convert_loads(at["loads"]);
+    stage.loads_given = at["loads"].given();
+    if (!at["until"].given()) at["until"].fault("is missing: when the stage ends");
+    stage.until = convert_until(at["until"]);
+    stage.damping = convert_damping(at["damping"]);
+    stage.time_step = at["time_step"].maybe_number();
+    if (stage.release > 0.0 && stage.remove.empty())
+        at["release"].fault("there is nothing to release: the stage deletes no blocks");
+    return stage;
+}
+
+}  // namespace
+
+std::vector<StageSpec> convert_stages(const Cursor& scenario) {
+    std::vector<StageSpec> all;
+    std::set<std::string> names;
+    Value joints = scenario["joints"].value();
+    for (const Cursor& at : scenario["stages"].items()) {
+        all.push_back(convert_stage(at, joints));
+        if (!names.insert(all.back().name).second) at["name"].fault("a stage of this name is there already");
+    }
+    return all;
+}
+
+RunSpec convert_run(const Cursor& at) {
+    RunSpec run;
+    run.until = convert_until(at["until"]);
+    run.solver = at["solver"].text();
+    run.time_step = at["time_step"].maybe_number();
+    run.step_fraction = at["step_fraction"].number();
+    run.unchecked = at["unchecked"].yes();
+    run.damping = convert_damping(at["damping"]);
+    run.search = at["search"].text();
+    run.skin = at["skin"].maybe_number();
+    run.face_path = at["face_path"].yes();
+    run.threads = static_cast<int>(at["threads"].number());
+    return run;
+}
+
+}  // namespace talus
