@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 namespace talus {
@@ -46,6 +47,25 @@ Nearest nearest_edge(const Model& model, const State& state, const Vec2& place, 
     return nearest;
 }
 
+/// Corner whose edge looks most along the direction; -1 if none does within 5 degrees.
+int edge_towards(const Model& model, const State& state, PartId part, const Vec2& direction) {
+    const double angle = state.motion.angle[model.parts.block[part]];
+    int best = -1;
+    double largest = std::cos(radians(5.0));
+    for (int c = model.parts.first_corner[part]; c < model.parts.first_corner[part + 1]; ++c) {
+        const double cosine = turned(model.corners.normal[c], angle).dot(direction);
+        if (cosine > largest) largest = cosine, best = c;
+    }
+    return best;
+}
+
+/// The two edges that lie on each other, found from the normal: the general law does not name them.
+std::optional<std::pair<Edge, Edge>> facing_edges(const Model& model, const State& state, const Contact& c) {
+    const int a = edge_towards(model, state, c.part_a, c.normal), b = edge_towards(model, state, c.part_b, -c.normal);
+    if (a < 0 || b < 0) return std::nullopt;
+    return std::pair(edge_at(model, state, c.part_a, a), edge_at(model, state, c.part_b, b));
+}
+
 Vec2 relative_displacement(const PlacedJoint& joint, const State& s) {
     return joint.on_b.displacement(s) - joint.on_a.displacement(s);
 }
@@ -79,13 +99,15 @@ PlacedJoint joint_near(const Model& model, const State& state, const Vec2& place
 
 double max_normal_stress(const Model& model, const State& state, const Contact& c) {
     if (c.length <= 0.0) return 0.0;
-    if (c.edge_a < 0 || c.edge_b < 0) return 2.0 * c.normal_force / c.length;
-    const Edge a = edge_at(model, state, c.part_a, c.edge_a), b = edge_at(model, state, c.part_b, c.edge_b);
+    const double triangular = 2.0 * c.normal_force / c.length;
+    const auto edges = facing_edges(model, state, c);
+    if (!edges) return triangular;
+    const auto& [a, b] = *edges;
     const Vec2 along = (a.to - a.from) / a.length();
     const auto place = [&](const Vec2& p) { return (p - a.from).dot(along); };
     const double low = std::max(0.0, std::min(place(b.from), place(b.to)));
     const double high = std::min(a.length(), std::max(place(b.from), place(b.to)));
-    if (c.length < (1.0 - 1e-6) * (high - low)) return 2.0 * c.normal_force / c.length;
+    if (c.length < (1.0 - 1e-6) * (high - low)) return triangular;
     const double eccentricity = std::abs(place(c.point) - 0.5 * (low + high));
     return c.normal_force / c.length * (1.0 + 6.0 * eccentricity / c.length);
 }
