@@ -4,6 +4,7 @@
 #include "contact/face_path.hpp"
 #include "contact/law.hpp"
 #include "contact/separation.hpp"
+#include "model/supports.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -18,9 +19,20 @@ constexpr double smooth_cos = 0.985;  // edges that meet at less than 10 degrees
 
 bool key_less(const Contact& c, const Pair& p) { return c.part_a < p.a || (c.part_a == p.a && c.part_b < p.b); }
 
-bool movable(const Model& model, const State& state, BlockId a, BlockId b) {
-    return a != b && !state.removed[a] && !state.removed[b] && !(model.blocks.held(a) && model.blocks.held(b));
-}
+// Pairs that cannot move against each other are not looked at: parts of one block, two held blocks, removed ones.
+class Movable {
+public:
+    Movable(const Model& model, const State& state) : model_(model), removed_(state.removed), fixed_(immovable(model)) {}
+    bool operator()(PartId part_a, PartId part_b) const {
+        const BlockId a = model_.parts.block[part_a], b = model_.parts.block[part_b];
+        return a != b && !removed_[a] && !removed_[b] && !(fixed_[a] && fixed_[b]);
+    }
+
+private:
+    const Model& model_;
+    const std::vector<std::uint8_t>& removed_;
+    const std::vector<std::uint8_t> fixed_;
+};
 
 struct Work {  // of one chunk of blocks, J
     double friction = 0.0, damping = 0.0, released = 0.0;
@@ -290,6 +302,7 @@ double memory_reach(const Model& model, PartId a, PartId b) {
 
 void refresh_contacts(const Model& model, std::span<const Pair> pairs, State& state, Incidence& incidence) {
     const Contacts& old = state.contacts;
+    const Movable movable(model, state);
     std::vector<Contact> list;
     std::vector<Force> on_a, on_b;
     const std::size_t room = std::max(pairs.size(), old.list.size());
@@ -299,13 +312,13 @@ void refresh_contacts(const Model& model, std::span<const Pair> pairs, State& st
     std::size_t i = 0;
     const auto keep = [&](std::size_t k) {
         const Contact& c = old.list[k];
-        if (!c.alive || !movable(model, state, model.parts.block[c.part_a], model.parts.block[c.part_b])) return;
+        if (!c.alive || !movable(c.part_a, c.part_b)) return;
         list.push_back(c);
         on_a.push_back(old.on_a[k]);
         on_b.push_back(old.on_b[k]);
     };
     for (const Pair& pair : pairs) {
-        if (!movable(model, state, model.parts.block[pair.a], model.parts.block[pair.b])) continue;
+        if (!movable(pair.a, pair.b)) continue;
         while (i < old.list.size() && key_less(old.list[i], pair)) keep(i++);
         if (i < old.list.size() && old.list[i].part_a == pair.a && old.list[i].part_b == pair.b) {
             list.push_back(old.list[i]);
