@@ -190,7 +190,12 @@ private:
         // A contact that has moved to other edges keeps the part of its shear force that lies in the new plane.
         if (c.touching && c.shear_force != 0.0) {
             const double turned = c.normal.x() * nx + c.normal.y() * ny;
-            if (turned < 0.9999) c.shear_force *= std::max(turned, 0.0);
+            if (turned < 0.9999) {
+                const double share = std::max(turned, 0.0);
+                work.released += c.shear_energy * (1.0 - share * share);
+                c.shear_force *= share;
+                c.shear_energy *= share * share;
+            }
         }
 
         const double dashpot = dt_ > 0.0 ? model_.contact_damping : 0.0;
@@ -234,12 +239,12 @@ private:
             const BlockId block_a = model_.parts.block[c.part_a], block_b = model_.parts.block[c.part_b];
             const Vec2 v = relative_velocity(block_a, block_b, c.point - state_.motion.position[block_a],
                                              c.point - state_.motion.position[block_b]);
-            work.released += c.shear_force * c.shear_force / (2.0 * model_.joints[c.joint].ks * c.length);
+            work.released += c.shear_energy;
             work.friction -= 0.5 * c.shear_force * v.dot(perp(c.normal)) * dt_;
         }
         c.touching = 0;
         c.sliding = 0;
-        c.length = c.normal_force = c.shear_force = c.strength = 0.0;
+        c.length = c.normal_force = c.shear_force = c.shear_energy = c.strength = 0.0;
         state_.contacts.on_a[i] = Force{};
         state_.contacts.on_b[i] = Force{};
         const Separation apart = separation(a, b, dx, dy);
@@ -380,7 +385,7 @@ StrainEnergy strain_energy(const Model& model, const Placed& placed, const State
     for (const Contact& c : state.contacts.list) {
         if (!c.touching) continue;
         const Joint& joint = model.joints[c.joint];
-        if (c.shear_force != 0.0) energy.shear += c.shear_force * c.shear_force / (2.0 * joint.ks * c.length);
+        energy.shear += c.shear_energy;
         const PlacedPart a(model, placed, c.part_a), b(model, placed, c.part_b);
         Vec2 d = state.motion.position[model.parts.block[c.part_b]] - state.motion.position[model.parts.block[c.part_a]];
         d -= c.dilation * c.normal;

@@ -25,25 +25,28 @@ struct ShearResult {
     bool bonds_fail = false;  // first slip of a joint that weakens: its bonds are gone
 };
 
-/// |T| <= c L_bonded + N tan(phi); elastic below with ks x length. When a contact shrinks, the shear stress of the part that
-/// is lost leaves with it: T scales with the length, otherwise friction would make energy (docs/method.md, shear spring).
-/// Friction work is taken with the mean shear force of the step, so that shear work = stored + dissipated + released
-/// exactly.
+/// |T| <= c L_bonded + N tan(phi); elastic below with ks x length. A contact that shrinks takes the shear stress of the part
+/// that is lost with it, otherwise friction would make energy; a part that is new carries none. What counts is the length
+/// that is sheared, T^2 / (2 ks E) with the stored energy E (at most the contact length, by Cauchy-Schwarz): only when the
+/// contact becomes shorter than that does T fall. A length that trembles therefore costs nothing, where T x length/old length
+/// would bleed shear force at every tremor.
+/// Friction work is taken with the mean shear force of the step, so that shear work = stored + dissipated + released exactly.
 struct MohrCoulomb {
     ShearResult operator()(const Joint& joint, const ShearStep& step, Contact& c) const {
         ShearResult result;
         const double stiffness = joint.ks * step.length;
-        double before = c.shear_force;
-        if (before != 0.0 && step.length != c.length) {
-            const double stored = before * before / (2.0 * joint.ks * c.length);
-            if (step.length < c.length) before *= step.length / c.length;
-            result.released = stored - before * before / (2.0 * stiffness);
+        double before = c.shear_force, energy = c.shear_energy;
+        const double twice_energy_all = before * before / stiffness;  // if the whole length were sheared evenly
+        if (twice_energy_all > 2.0 * energy) {                        // the sheared length no longer fits
+            const double share = 2.0 * energy / twice_energy_all;
+            before *= share;
+            result.released = energy * (1.0 - share);
+            energy *= share;
+            // What is lost worked through half of this step before it went (mean of both its ends).
+            result.friction = -0.5 * (c.shear_force - before) * step.displacement;
         }
-        // The part of the force that is lost worked through half of this step before it went (mean of both its ends).
-        result.friction = -0.5 * (c.shear_force - before) * step.displacement;
         const double trial = before - stiffness * step.displacement;
         double strength = this->strength(joint, step, c.slipped);
-        double force = trial;
         c.sliding = std::abs(trial) > strength;
         if (c.sliding) {
             if (!c.slipped && joint.weakens) {
@@ -54,19 +57,24 @@ struct MohrCoulomb {
             }
             c.slipped = 1;
             const double sign = trial > 0.0 ? 1.0 : -1.0;
-            force = sign * strength;
+            const double force = sign * strength;
             const double slip = (std::abs(trial) - strength) / stiffness;
             c.slip += slip;
             c.slip_sum -= sign * slip;
-            result.friction += 0.5 * (before + force) * sign * slip;
+            // Slip evens the stress out: a contact that slides is sheared over its whole length.
+            const double stored = 0.5 * strength * strength / stiffness;
             const double dilation = joint.tan_dilation * std::min(std::abs(c.slip_sum), joint.dilation_cutoff_slip);
+            result.friction += energy - stored - 0.5 * (before + force) * step.displacement;
             result.friction -= step.normal_force * (dilation - c.dilation);  // what lifts the block is not lost
             c.dilation = dilation;
-        } else if (std::abs(force + step.dashpot) <= strength) {
-            result.dashpot = step.dashpot;
+            c.shear_force = force;
+            c.shear_energy = stored;
+        } else {
+            if (std::abs(trial + step.dashpot) <= strength) result.dashpot = step.dashpot;
+            c.shear_force = trial;
+            c.shear_energy = std::max(energy - 0.5 * (before + trial) * step.displacement, 0.5 * trial * trial / stiffness);
         }
         c.strength = strength;
-        c.shear_force = force;
         c.length = step.length;
         return result;
     }

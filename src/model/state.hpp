@@ -37,6 +37,7 @@ struct Contact {
     double overlap = 0.0;                  // m, mean over the length; < 0 open
     double normal_force = 0.0;             // N, compression > 0
     double shear_force = 0.0;              // N on b along perp(normal)
+    double shear_energy = 0.0;             // J, stored by the shear force: shear_force^2 / (2 ks x the length that is sheared)
     double strength = 0.0;                 // N, shear force it could carry now
     double slip = 0.0;                     // m, path slipped so far
     double slip_sum = 0.0;                 // m, signed sum: sense of the slip

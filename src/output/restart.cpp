@@ -22,7 +22,7 @@ namespace {
     [[maybe_unused]] const auto& [total0, kinetic0, gravity, loads, work, local_damping, driven, friction, contact_damping,
                                   released] = ledger;
     [[maybe_unused]] const auto& [part_a, part_b, joint, face, edge_a, edge_b, touching, slipped, sliding, alive, length,
-                                  overlap, normal_force, shear_force, strength, slip, slip_sum, dilation, point, normal] =
+                                  overlap, normal_force, shear_force, shear_energy, strength, slip, slip_sum, dilation, point, normal] =
         contact;
 }
 
@@ -138,6 +138,7 @@ void transfer_contacts(Archive& to, List& list) {
     to.column("contacts/overlap", "m", list, &Contact::overlap);
     to.column("contacts/normal_force", "N", list, &Contact::normal_force);
     to.column("contacts/shear_force", "N", list, &Contact::shear_force);
+    to.column("contacts/shear_energy", "J", list, &Contact::shear_energy);
     to.column("contacts/strength", "N", list, &Contact::strength);
     to.column("contacts/slip", "m", list, &Contact::slip);
     to.column("contacts/slip_sum", "m", list, &Contact::slip_sum);

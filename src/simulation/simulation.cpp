@@ -98,9 +98,12 @@ void Simulation::step() {
 }
 
 void Simulation::update_forces(double dt) {                               // dt = 0 once at the start: no slip
-    place(model_, state_.motion, boxed_position_.empty(), placed_);       lap(Part::place);
-    if (left_boxes()) refresh();                                          lap(Part::search);
-    update_contacts(model_, placed_, dt, state_, incidence_);             lap(Part::contacts);
+    place(model_, state_.motion, boxed_position_.empty(), placed_);
+    lap(Part::place);
+    if (left_boxes()) refresh();
+    lap(Part::search);
+    update_contacts(model_, placed_, dt, state_, incidence_);
+    lap(Part::contacts);
     external_forces(model_, state_, state_.load);
     sum_contacts(model_, state_.contacts, incidence_, state_.load);
     if (model_.local_damping > 0.0) damp_locally(model_, state_.motion, state_.load, state_.damping);
