@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 namespace talus {
@@ -184,11 +185,18 @@ private:
             if (key.presence.required)
                 fault(value.line, prefix + key.name, "is missing (" + key.shape.text() + ": " + key.meaning + ")");
             if (!key.presence.value.empty()) {
-                const Value filled = with_line(parse_yaml(key.presence.value, "default", faults_), value.line);
+                const Value filled = with_line(default_value(key.presence.value), value.line);
                 out.entries.push_back({key.name, value.line, check(filled, key.shape, prefix + key.name)});
             }
         }
         return out;
+    }
+
+    // Thousands of blocks have the same few defaults: each is parsed once.
+    const Value& default_value(const std::string& yaml) {
+        const auto [at, fresh] = defaults_.try_emplace(yaml);
+        if (fresh) at->second = parse_yaml(yaml, "default", faults_);
+        return at->second;
     }
 
     static Value with_line(Value value, int line) {
@@ -212,6 +220,7 @@ private:
 
     const std::string& file_;
     std::vector<Fault>& faults_;
+    std::map<std::string, Value> defaults_;
 };
 
 }  // namespace
