@@ -117,7 +117,7 @@ private:
         }
         out.patch = distance_potential(a, b, dx, dy);
         if (!out.patch.loaded) return false;
-        out.kn_force = std::hypot(out.patch.fx, out.patch.fy);
+        out.kn_force = std::sqrt(out.patch.fx * out.patch.fx + out.patch.fy * out.patch.fy);
         if (out.kn_force == 0.0) return false;
         out.nx = out.patch.fx / out.kn_force;
         out.ny = out.patch.fy / out.kn_force;
@@ -152,7 +152,7 @@ private:
         if (patch.state != FaceState::loaded) return patch.state;
         out.patch = patch;
         const double along = patch.fx * patch.nx + patch.fy * patch.ny;
-        const double size = std::hypot(patch.fx, patch.fy);
+        const double size = std::sqrt(patch.fx * patch.fx + patch.fy * patch.fy);
         // The normal is that of the force; without one (a bond pressed here and pulled there) that of the faces.
         if (std::abs(along) > 0.9 * size && size > 0.0) {
             out.kn_force = along > 0.0 ? size : -size;
@@ -369,7 +369,6 @@ void sum_contacts(const Model& model, const Contacts& contacts, const Incidence&
         double fx = 0.0, fy = 0.0, torque = 0.0;
         for (int e = incidence.first[b]; e < incidence.first[b + 1]; ++e) {
             const int i = incidence.entry[e] >> 1;
-            if (!contacts.list[i].touching) continue;
             const Force& f = incidence.entry[e] & 1 ? contacts.on_b[i] : contacts.on_a[i];
             fx += f.force.x();
             fy += f.force.y();

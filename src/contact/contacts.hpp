@@ -36,7 +36,7 @@ void refresh_contacts(const Model& model, std::span<const Pair> pairs, State& st
 /// only). Adds what slip and dashpots dissipate to the ledger.
 void update_contacts(const Model& model, const Placed& placed, double dt, State& state, const Incidence& incidence);
 
-/// load[b] += sum over its contacts, in key order.
+/// load[b] += sum over its contacts, in key order. Contacts that carry nothing hold zeros, which change no bit of a sum.
 void sum_contacts(const Model& model, const Contacts& contacts, const Incidence& incidence, std::span<Force> load);
 
 /// J, elastic energy stored in the joints now: normal and shear.

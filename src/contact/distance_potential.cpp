@@ -14,8 +14,10 @@ struct Line {  // depth below edge k of P along an edge of Q: D + s t, t in [0, 
 // centroid of a; sign is +1 where Q is block b (force on b) and -1 where Q is block a (the reaction falls on b).
 void integrate(const PlacedPart& q, double qx, double qy, const PlacedPart& p, double px, double py, double sign, double dx, double dy,
                Patch& patch, double& weight) {
-    static thread_local std::vector<Line> lines;
-    lines.resize(p.n);
+    constexpr int few = 16;  // parts with more edges than this are rare and may allocate
+    Line some[few];
+    std::vector<Line> many(p.n > few ? p.n : 0);
+    Line* const lines = p.n > few ? many.data() : some;
     for (int e = 0; e < q.n; ++e) {
         if (q.internal[e]) continue;
         const Vec2& from = q.arm[e];
@@ -27,12 +29,14 @@ void integrate(const PlacedPart& q, double qx, double qy, const PlacedPart& p, d
             const double depth = p.offset[k] - (p.normal[k].x() * ax + p.normal[k].y() * ay);
             const double slope = -(p.normal[k].x() * ux + p.normal[k].y() * uy);
             lines[k] = {depth, slope, !p.internal[k]};
-            if (slope > 0.0)
-                lo = std::max(lo, -depth / slope);
-            else if (slope < 0.0)
-                hi = std::min(hi, -depth / slope);
-            else if (depth <= 0.0)
+            const double end = depth + slope;
+            if (depth > 0.0 && end > 0.0) continue;  // the usual case: edge k does not cut this edge
+            if (depth <= 0.0 && end <= 0.0)
                 hi = lo;
+            else if (slope > 0.0)
+                lo = std::max(lo, -depth / slope);
+            else
+                hi = std::min(hi, -depth / slope);
         }
         if (!(lo < hi)) continue;
 
