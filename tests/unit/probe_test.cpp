@@ -56,7 +56,6 @@ struct Bench {
         state.contacts.list = {{.part_a = 0,
                                 .part_b = 1,
                                 .joint = 0,
-                                .edge_a = 2,
                                 .edge_b = 4,
                                 .touching = 1,
                                 .length = length,
@@ -124,6 +123,8 @@ TEST_CASE("the largest stress on a face follows the eccentricity, pressed all ov
     CHECK(largest(-0.2, 2.0) == Approx(80e3));
     CHECK(largest(0.5, 1.5) == Approx(133333.333));
     CHECK(largest(0.7, 0.9) == Approx(222222.222));
+    bench.state.motion.angle[1] = radians(30.0);  // no longer face to face: a corner, pressed like a wedge
+    CHECK(largest(0.0, 0.01) == Approx(2e7));
 }
 
 TEST_CASE("stresses are forces over the loaded length, utilisation is shear over strength") {
