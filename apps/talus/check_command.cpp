@@ -4,6 +4,7 @@
 #include "output/output_path.hpp"
 #include "output/results.hpp"
 #include "scenario/reader.hpp"
+#include "simulation/preview.hpp"
 #include "simulation/run.hpp"
 
 #include <sys/resource.h>
@@ -132,7 +133,7 @@ void print_cost(Simulation& simulation) {
 
 void write_geometry(const std::string& path, Simulation& simulation) {
     Recorder recorder(choose_output_path(path, true), simulation, std::vector<std::string>{});
-    recorder.write_frame(simulation);
+    recorder.write_frame(simulation, with_all_touching_faces(simulation));
     recorder.close("checked");
 }
 

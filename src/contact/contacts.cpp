@@ -141,8 +141,10 @@ private:
             memory = {face.s0, face.s1, face.sigma0 / joint.kn, face.sigma1 / joint.kn, broken, joint.cells};
             FacePatch patch = face_contact(a, b, dx, dy, ea, eb, &memory);
             if (patch.largest_pull * joint.kn > joint.tension &&
-                break_cells(a, b, dx, dy, ea, eb, memory, joint.tension / joint.kn, broken) > 0)
+                break_cells(a, b, dx, dy, ea, eb, memory, joint.tension / joint.kn, broken) > 0) {
                 patch = face_contact(a, b, dx, dy, ea, eb, &memory);
+                if (patch.bonded_length == 0.0) c.slipped = 1;  // all of it has broken: residual strength
+            }
             return accept(patch, out);
         }
         return accept(face_contact(a, b, dx, dy, ea, eb, nullptr), out);

@@ -50,7 +50,7 @@ int joint_index(const Model& model, const std::string& name) {
 }
 
 Joint make_joint(const JointSpec& spec) {
-    const ResidualSpec residual = spec.residual.value_or(ResidualSpec{spec.friction_angle, spec.cohesion, spec.tension});
+    const ResidualSpec residual = spec.residual.value_or(ResidualSpec{spec.friction_angle, spec.cohesion});
     Joint joint;
     joint.kn = spec.normal_stiffness;
     joint.ks = spec.shear_stiffness;
@@ -59,7 +59,6 @@ Joint make_joint(const JointSpec& spec) {
     joint.tension = spec.tension;
     joint.tan_friction_residual = std::tan(residual.friction_angle);
     joint.cohesion_residual = residual.cohesion;
-    joint.tension_residual = residual.tension;
     joint.tan_dilation = std::tan(spec.dilation_angle);
     if (spec.dilation_cutoff_slip) joint.dilation_cutoff_slip = *spec.dilation_cutoff_slip;
     joint.weakens = spec.residual.has_value();

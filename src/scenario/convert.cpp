@@ -15,7 +15,7 @@ void check_joint(const Cursor& joint) {
     };
     above(joint["dilation_angle_deg"], joint["friction_angle_deg"],
           "is above the friction angle: shearing would gain energy");
-    for (const char* key : {"friction_angle_deg", "cohesion", "tension"})
+    for (const char* key : {"friction_angle_deg", "cohesion"})
         above(joint["residual"][key], joint[key], "is above the peak value");
 }
 
@@ -65,8 +65,7 @@ JointSpec convert_joint(const std::string& name, const Cursor& at) {
     joint.cells = static_cast<int>(at["cells"].number());
     if (const Cursor residual = at["residual"]; residual.given()) {
         const Cursor friction = residual["friction_angle_deg"];
-        joint.residual = {friction.given() ? friction.angle() : joint.friction_angle, residual["cohesion"].number(),
-                          residual["tension"].number()};
+        joint.residual = {friction.given() ? friction.angle() : joint.friction_angle, residual["cohesion"].number()};
     }
     check_joint(at);
     return joint;

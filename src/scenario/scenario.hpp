@@ -26,7 +26,7 @@ struct MaterialSpec {
 };
 
 struct ResidualSpec {  // strength after the first slip or break
-    double friction_angle = 0.0, cohesion = 0.0, tension = 0.0;  // rad, Pa, Pa
+    double friction_angle = 0.0, cohesion = 0.0;  // rad, Pa
 };
 
 struct JointSpec {

@@ -47,7 +47,7 @@ RestartInfo restart_info(const Simulation& simulation, const std::vector<std::st
     const Scenario& scenario = simulation.scenario();
     RestartInfo info;
     info.scenario_file = scenario.file;
-    info.scenario_text = scenario.text;
+    info.scenario_text = scenario.canonical_json;  // with overrides and the row of `cases` worked in
     info.scenario_hash = scenario.hash;
     info.overrides = overrides;
     return info;
@@ -111,13 +111,13 @@ void Recorder::add_histories(const Simulation& simulation) {
     }
 }
 
-void Recorder::write_frame(const Simulation& simulation) {
-    writer_.frame(simulation.model(), simulation.state(), simulation.energies());
-    last_frame_time_ = simulation.state().time;
+void Recorder::write_frame(const Simulation& simulation, const State& state) {
+    writer_.frame(simulation.model(), state, simulation.energies());
+    last_frame_time_ = state.time;
 }
 
 void Recorder::frame_and_restart(const Simulation& simulation) {
-    write_frame(simulation);
+    write_frame(simulation, simulation.state());
     if (!restart_written_ || since_restart_.seconds() > restart_interval) save_restart(simulation);
 }
 

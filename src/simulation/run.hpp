@@ -26,7 +26,7 @@ public:
     void begin_stage(const Simulation& simulation);     // a frame if the clock has just been set
     void after_step(const Simulation& simulation);      // what is due by now
     void end_stage(const Simulation& simulation);       // a frame of its end
-    void write_frame(const Simulation& simulation);     // now, due or not
+    void write_frame(const Simulation& simulation, const State& state);  // now, due or not
     void save_restart(const Simulation& simulation);
     void close(const std::string& status);              // without a restart file
     void finish(const Simulation& simulation, const std::string& status, double wall_time);

@@ -319,7 +319,7 @@ Energies Simulation::energies() const {
     e.strain_shear = strain.shear;
     e.friction = l.friction;
     e.contact_damping = l.contact_damping;
-    e.local_damping = -l.local_damping;
+    e.local_damping = 0.0 - l.local_damping;
     e.released = l.released;
     e.gravity = l.gravity;
     e.loads = l.loads;

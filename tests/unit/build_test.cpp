@@ -215,12 +215,11 @@ TEST_CASE("a joint keeps its strength unless residual values are given") {
     JointSpec spec = bonded_joint("j", 2e5, 1e5);
     CHECK_FALSE(make_joint(spec).weakens);
     CHECK(make_joint(spec).cohesion_residual == 2e5);
-    spec.residual = ResidualSpec{radians(25.0), 1e4, 0.0};
+    spec.residual = ResidualSpec{radians(25.0), 1e4};
     const Joint j = make_joint(spec);
     CHECK(j.weakens);
     CHECK(j.tan_friction == Approx(std::tan(std::numbers::pi / 6.0)));
     CHECK(j.tan_friction_residual == Approx(0.46630765815));
-    CHECK(j.tension_residual == 0.0);
 }
 
 TEST_CASE("overlapping blocks are a fault that says which, where and how deep") {
