@@ -14,6 +14,9 @@ namespace talus {
 namespace {
 
 constexpr int chunk = 256;            // blocks per task; fixed, so that sums do not depend on the number of threads
+// Depth, as a share of memory_reach, up to which parts only touch: 1e-12 of a block. The corners of cut rock overlap by their
+// rounding; the force of such a corner (kn depth^2, 1e-14 N) is nothing, but half of all pairs would go through the general law.
+constexpr double touch_share = 1e-10;
 constexpr double smooth_cos = 0.985;  // edges that meet at less than 10 degrees may not use the face path: which of them is
                                       // in contact would depend on history
 
@@ -64,7 +67,7 @@ public:
             const bool of_a = c.edge_a >= a.first && c.edge_a < a.first + a.n;
             const double distance = of_a ? separation_by_edge(a, c.edge_a - a.first, b, dx, dy)
                                          : separation_by_edge(b, c.edge_a - b.first, a, -dx, -dy);
-            if (distance >= 0.0) return;
+            if (distance >= -touch_depth(c)) return;
         }
         Normal normal;
         if (find_normal(c, a, b, dx, dy, normal))
@@ -74,6 +77,8 @@ public:
     }
 
 private:
+    double touch_depth(const Contact& c) const { return touch_share * memory_reach(model_, c.part_a, c.part_b); }
+
     // True if the pair carries a normal force (or an intact bond); sets the edges of the contact.
     bool find_normal(Contact& c, const PlacedPart& a, const PlacedPart& b, double dx, double dy, Normal& out) {
         if (c.dilation == 0.0) return find_overlap(c, a, b, dx, dy, out);
@@ -100,7 +105,7 @@ private:
         const Separation apart = separation(a, b, dx, dy);
         c.edge_a = -1;
         c.edge_b = -1;
-        if (apart.distance >= 0.0) {
+        if (apart.distance >= -touch_depth(c)) {
             c.edge_a = apart.edge + (apart.of_a ? a.first : b.first);
             return false;
         }
@@ -255,7 +260,7 @@ private:
             end_face(c);
             const PartId part_a = c.part_a, part_b = c.part_b;
             c = Contact{part_a, part_b, model_.joint_between(part_a, part_b)};
-            c.edge_a = apart.distance >= 0.0 ? apart.edge + (apart.of_a ? a.first : b.first) : -1;
+            c.edge_a = apart.distance >= -touch_depth(c) ? apart.edge + (apart.of_a ? a.first : b.first) : -1;
         }
     }
 
