@@ -153,6 +153,7 @@ int check_command(const CheckArguments& arguments) {
     }
     Simulation simulation(scenario, build(scenario));
     simulation.begin_stage();
+    check_probes(simulation);
     if (!arguments.geometry.empty()) write_geometry(arguments.geometry, simulation);
     std::printf("%s\n", scenario.title.c_str());
     print_blocks(simulation);

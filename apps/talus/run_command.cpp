@@ -21,10 +21,12 @@ std::atomic<bool> asked_to_stop{false};
 
 void ask_to_stop(int) { asked_to_stop = true; }
 
-// Ctrl-C and a polite kill end the run at the next step, with a restart file.
+// Ctrl-C and a polite kill end the run at the next step, with a restart file. From the moment there is a result file: until
+// then there is nothing to save. A file that may not grow is for the writer to find out, not a reason to die.
 void listen_for_signals() {
     std::signal(SIGINT, ask_to_stop);
     std::signal(SIGTERM, ask_to_stop);
+    std::signal(SIGXFSZ, SIG_IGN);
 }
 
 Scenario pick(const RunArguments& arguments) {
@@ -53,7 +55,6 @@ void print_scene(const Simulation& simulation) {
 
 // Runs what is set up and closes the files, however it ends. What was written stays readable in every case.
 int carry_out(Simulation& simulation, Recorder& recorder, Watch* watch, Entry entry) {
-    listen_for_signals();
     Progress progress;
     Stopwatch clock;
     RunOptions options;
@@ -117,6 +118,8 @@ int run_command(const RunArguments& arguments) {
     Simulation simulation(scenario, build(scenario));
     print_scene(simulation);
     simulation.begin_stage();  // before any file is touched: the time step may be refused
+    check_probes(simulation);
+    listen_for_signals();
     Recorder recorder(output, simulation, arguments.overrides);
     std::unique_ptr<Watch> watch;
     if (!scenario.expect.empty())
@@ -135,6 +138,7 @@ int resume_command(const std::string& results, int threads) {
     State state = read_restart(restart_path(results), scene.model);
     Simulation simulation(scenario, std::move(scene), std::move(state));
     print_scene(simulation);
+    listen_for_signals();
     Recorder recorder(results, simulation, info);
     std::printf("going on from t = %s, frame %lld\n", number(simulation.state().time, "s").c_str(),
                 static_cast<long long>(recorder.frames()));

@@ -44,7 +44,8 @@ double account(const Model& model, const StepEnd& before, const StepEnd& after, 
 /// J, (m/2) v(t - dt/2) . v(t + dt/2) summed over the free blocks: changes by exactly the mid-step work.
 double kinetic_energy_of_ledger(const Model& model, const State& state, double dt);
 
-/// J: kinetic energy less the work done since the start of the ledger; zero but for rounding while dt is constant.
+/// J: kinetic energy less the work done since the start of the ledger; zero but for rounding with dt = stage_step, also if
+/// single steps were shorter.
 double ledger_error(const Model& model, const State& state, double dt);
 
 }  // namespace talus

@@ -167,6 +167,23 @@ void Recorder::close(const std::string& status) { writer_.finish({status, 0.0, 0
 
 std::string Recorder::restart_file() const { return restart_path(path()); }
 
+void check_probes(const Simulation& simulation) {
+    std::vector<ProbeSpec> probes;
+    for (const HistorySpec& history : simulation.scenario().record.history)
+        probes.insert(probes.end(), history.probes.begin(), history.probes.end());
+    for (const ExpectSpec& expect : simulation.scenario().expect) {
+        probes.push_back(expect.probe);
+        if (expect.against) probes.push_back(*expect.against);
+    }
+    std::vector<Fault> faults;
+    for (const ProbeSpec& probe : probes) try {
+            make_probe(probe, simulation.model(), simulation.first_state());
+        } catch (const InputError& error) {
+            faults.insert(faults.end(), error.faults().begin(), error.faults().end());
+        }
+    if (!faults.empty()) throw InputError(std::move(faults));
+}
+
 Outcome run(Simulation& simulation, const RunOptions& options) {
     bool settled = true;
     const auto watch = [&] {

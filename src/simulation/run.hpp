@@ -55,6 +55,9 @@ private:
     bool restart_written_ = false;
 };
 
+/// Throws InputError with every history and expectation that observes what is not there; before any file is touched.
+void check_probes(const Simulation& simulation);
+
 enum class Entry {
     fresh,    // nothing has been done yet
     begun,    // the first stage has begun (its time step was accepted)

@@ -1,0 +1,129 @@
+"""What the user gave wrong: one report that names file, line and key, exit code 2, and earlier results untouched."""
+
+import os
+import re
+import stat
+import unittest
+
+from program import INCLINE, SLOPE, Program, main
+
+
+def line_of(text, part):
+    return text[:text.index(part)].count("\n") + 1
+
+
+def replaced(old, new, text=INCLINE):
+    assert old in text, old
+    return text.replace(old, new)
+
+
+# name: (scenario, what the report says besides file and line, text on the line it names)
+SCENARIOS = {
+    "unknown key": (replaced("friction_angle_deg: 20", "friction_angel_deg: 20"),
+                    r"joints\.base\.friction_angel_deg: .*friction_angle_deg", "friction_angel"),
+    "wrong type": (replaced("density: 2500", "density: heavy"), r"materials\.rock\.density: .*number", "heavy"),
+    "negative density": (replaced("density: 2500", "density: -1"), r"materials\.rock\.density: .*> 0", "-1"),
+    "unknown joint": (INCLINE + "contacts: {default: bsae}\n", r"contacts\.default: .*base", "bsae"),
+    "open outline": (replaced("[[0, 0], [10, 0], [10, 5]]", "[[0, 0], [10, 0]]"), r"blocks\[0\]\.outline: .*3", "plane"),
+    "outline that crosses itself": (replaced("[[6, 3], [8, 4], [7.5, 5], [5.5, 4]]", "[[6, 3], [7.5, 5], [8, 4], [5.5, 4]]"),
+                                    r"blocks\[1\]\.outline: ", "[7.5, 5]"),
+    "rock outline that crosses itself": (replaced("[12, 3], [6, 10]", "[6, 10], [12, 3]", SLOPE), r"rock\.outline: ", "[12, 3]"),
+    "overlapping blocks": (replaced("[6, 3], [8, 4]", "[6, 2], [8, 3]"), r"block.*plane.* by 0\.\d+ m at \(", "name: block"),
+    "block without area": (replaced("[8, 4], [7.5, 5], [5.5, 4]", "[8, 4], [10, 5]"), r"blocks\[1\]\.outline: .*area", "name: block"),
+    "zero spacing": (replaced("spacing: 1.2", "spacing: 0", SLOPE), r"rock\.joint_sets\[1\]\.spacing: .*> 0", "spacing: 0"),
+    "duplicate key": (INCLINE + "gravity: [0, -1]\n", r"gravity: ", "gravity: [0, -1]"),
+    "water": (INCLINE + "water: {level: 3}\n", r"water: not available yet", "water"),
+    "bolts": (INCLINE + "bolts: []\n", r"bolts: not available yet", "bolts"),
+    "deformation": (replaced("density: 2500", "density: 2500, young: 5e10"), r"materials\.rock\.young: not available yet", "young"),
+    "negative time": (replaced("time: 0.1", "time: -1"), r"run\.until\.time: ", "-1"),
+    "point outside": (replaced("point: [6.75, 4]", "point: [60, 4]"), r"no block contains the point", "[60, 4]"),
+    "no YAML": (INCLINE + "loads: [{\n", r"", None),
+}
+
+
+class BadInput(Program):
+    def refused(self, *arguments, report):
+        """The program ends with 2 and this report, and no file has changed, come or gone."""
+        before = self.files()
+        out, err = self.talus(*arguments, code=2)
+        self.assertRegex(err, report)
+        self.assertEqual(self.files(), before)
+        return out, err
+
+    def test_every_fault_of_a_scenario_is_one_report_with_file_line_and_key(self):
+        self.write("slope.yaml", INCLINE)
+        self.talus("run", "slope.yaml")  # an earlier result of the same name
+        for name, (text, report, at) in SCENARIOS.items():
+            with self.subTest(name):
+                self.write("slope.yaml", text)
+                line = line_of(text, at) if at else r"\d+"
+                for command in ("run", "check"):
+                    _, err = self.refused(command, "slope.yaml", report=rf"^slope\.yaml:{line}.*{report}")
+                    self.assertEqual(len(err.strip().splitlines()), 1, err)
+
+    def test_all_faults_come_at_once(self):
+        self.write("bad.yaml", replaced("density: 2500", "density: -1") + "water: 3\ncontacts: {default: nothing}\n")
+        _, err = self.refused("run", "bad.yaml", report="density")
+        self.assertEqual([line.split()[0] for line in err.strip().splitlines()], ["bad.yaml:3", "bad.yaml:11", "bad.yaml:12"])
+
+    def test_a_step_above_the_stable_one(self):
+        self.write("slope.yaml", INCLINE)
+        self.talus("run", "slope.yaml")
+        self.refused("run", "slope.yaml", "--set", "run.time_step=0.1", report=r"run\.time_step: .*stable step.*unchecked")
+
+    def test_faults_of_the_command_line(self):
+        self.write("slope.yaml", INCLINE)
+        self.refused("run", "nothing.yaml", report="nothing.yaml")
+        self.refused("run", ".", report=r"\.")
+        self.refused("run", "slope.yaml", "--set", "joints.base.cohesoin=1", report="joints.base.cohesoin: .*cohesion")
+        self.refused("run", "slope.yaml", "--set", "nonsense", report="nonsense")
+        self.refused("run", "slope.yaml", "--case", "none", report="none")
+        self.refused("run", "slope.yaml", "--search", "fastest", report="run.search")
+        self.refused("run", "slope.yaml", "--wrong", report="wrong")
+        self.refused("verify", "nothing", report="nothing")
+        self.refused("verify", "slope.yaml", report="expect")
+        self.refused("export", "nothing.h5", report="nothing.h5")
+        self.refused("frobnicate", report="frobnicate|required")
+
+    def test_a_result_that_cannot_be_written(self):
+        self.write("slope.yaml", INCLINE)
+        self.refused("run", "slope.yaml", "-o", "no/such/folder/out.h5", report=r"no/such/folder/out\.h5: cannot be written")
+        (self.folder / "folder.h5").mkdir()
+        self.assertEqual(self.talus("run", "slope.yaml", "-o", "folder.h5/", code=2)[0].count("frames in"), 0)
+        if os.geteuid() != 0:  # nothing is forbidden to root
+            (self.folder / "locked").mkdir()
+            (self.folder / "locked").chmod(stat.S_IRUSR | stat.S_IXUSR)
+            self.talus("run", "slope.yaml", "-o", "locked/out.h5", code=2)
+
+    def test_a_result_of_another_version(self):
+        self.write("slope.yaml", INCLINE)
+        self.talus("run", "slope.yaml")
+        for name, commands in (("slope.h5", ("info", "export")), ("slope.restart.h5", ("resume",))):
+            with self.subTest(name):
+                path = self.folder / name
+                good = path.read_bytes()
+                at = good.index(b"schema_version\0")
+                value = good.rindex((1).to_bytes(8, "little"), at, at + 72)  # the last such number of the attribute
+                path.write_bytes(good[:value] + (99).to_bytes(8, "little") + good[value + 8:])
+                for command in commands:
+                    self.refused(command, "slope.h5", report=rf"{re.escape(name)}: .*version 99")
+                path.write_bytes(good)
+        self.talus("info", "slope.h5")
+
+    def test_a_file_that_is_cut_off_or_none_of_ours(self):
+        self.write("slope.yaml", INCLINE)
+        self.talus("run", "slope.yaml")
+        good = self.files()
+        for name, commands in (("slope.h5", ("info", "export", "resume")), ("slope.restart.h5", ("resume",))):
+            for size in (0, 100, len(good[name]) // 2, len(good[name]) - 1):
+                with self.subTest(name, size=size):
+                    (self.folder / name).write_bytes(good[name][:size])
+                    for command in commands:
+                        self.refused(command, "slope.h5", report=re.escape(name))
+            (self.folder / name).write_bytes(good[name])
+        self.refused("info", "slope.yaml", report="slope.yaml")
+        self.refused("resume", "other.h5", report=r"other\.")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,147 @@
+// One hash: the state after any number of steps depends on the scenario alone, neither on the search, the skin, the threads,
+// nor on Scratch that was lost or a restart on the way.
+#include "core/random.hpp"
+#include "model/hash.hpp"
+#include "output/restart.hpp"
+#include "support/catch.hpp"
+#include "support/folder.hpp"
+#include "support/whole_run.hpp"
+
+#include <algorithm>
+#include <set>
+#include <vector>
+
+using namespace talus;
+using namespace talus::test;
+
+namespace {
+
+// A slope of some 600 blocks (more than two chunks of the parallel loops) under in-situ stress, one joint set bonded: it
+// settles, its toe is dug away over a twentieth of a second, then gravity grows and it comes down.
+const std::string slope = R"(
+title: Slope that loses its toe
+gravity: {time: [0, 0.1], x: [0, 0], y: [-9.81, -40]}
+materials: {rock: {density: 2500}}
+joints:
+  bedding: {normal_stiffness: 1e8, shear_stiffness: 5e7, friction_angle_deg: 15, dilation_angle_deg: 5, dilation_cutoff_slip: 0.01}
+  cross: {normal_stiffness: 1e8, shear_stiffness: 5e7, friction_angle_deg: 40, cohesion: 2e4, tension: 5e3,
+          residual: {friction_angle_deg: 30}}
+contacts: {default: bedding}
+rock:
+  outline: [[0, 0], [40, 0], [40, 10], [28, 10], [18, 30], [0, 30]]
+  joint_sets:
+    - {angle_deg: -38, spacing: 1.1, joint: bedding}
+    - {angle_deg: 55, spacing: {mean: 1.4, deviation: 0.2}, seed: 5, joint: cross}
+  held: {left: true, right: true, bottom: true}
+initial_stress: {k0: 0.5}
+stages:
+  - {name: settle, damping: {local: 0.8}, until: {time: 0.1}, reset: true}
+  - {name: dig, delete: [{inside: [[22, 8], [34, 8], [34, 12], [22, 12]]}], release: 0.05, until: {time: 0.1}}
+run: {until: {time: 0.3}, damping: {contact: 1e-5}}
+)";
+
+constexpr int look = 50;  // steps between two hashes
+
+struct Trace {
+    std::vector<std::uint64_t> hashes;
+    std::int64_t steps = 0, refreshes = 0;
+};
+
+template <class AfterStep>
+Trace trace(const Scenario& scenario, AfterStep after_step) {
+    WholeRun run(scenario);
+    Trace found;
+    run.to_the_end([&](WholeRun& r) {
+        if (r.state().total_steps % look == 0) found.hashes.push_back(state_hash(r.model(), r.state()));
+        after_step(r);
+    });
+    found.hashes.push_back(state_hash(run.model(), run.state()));
+    found.steps = run.state().total_steps;
+    found.refreshes = run.simulation().refreshes();
+    return found;
+}
+
+Trace trace(const Scenario& scenario) {
+    return trace(scenario, [](WholeRun&) {});
+}
+
+const Trace& reference() {
+    static const Trace found = trace(scenario_of(slope));
+    return found;
+}
+
+}  // namespace
+
+TEST_CASE("the slope of the hash tests breaks, slides, comes apart and refreshes its pairs") {
+    WholeRun run(scenario_of(slope));
+    int sliding = 0, dilated = 0;
+    std::int64_t steps_of_stage[3] = {0, 0, 0};
+    run.to_the_end([&](WholeRun& r) { ++steps_of_stage[r.state().stage]; });
+    const State& end = run.state();
+    for (const Contact& c : end.contacts.list) sliding += c.sliding, dilated += c.dilation > 0.0;
+    double farthest = 0.0;
+    int removed = 0;
+    for (BlockId b = 0; b < run.model().blocks.size(); ++b) {
+        removed += end.removed[b];
+        if (!end.removed[b]) farthest = std::max(farthest, (end.motion.position[b] - end.start_position[b]).norm());
+    }
+    CAPTURE(run.model().blocks.size(), end.total_steps, farthest, sliding, dilated, removed, run.simulation().refreshes());
+    CHECK(run.model().blocks.size() > 512);
+    CHECK(removed > 5);
+    CHECK(farthest > 1.0);
+    CHECK(sliding > 20);
+    CHECK(dilated > 20);
+    CHECK(std::set<std::uint8_t>(end.contacts.broken.begin(), end.contacts.broken.end()).size() == 3);  // intact, 1 and 2
+    CHECK(run.simulation().refreshes() > 10);
+    for (const std::int64_t steps : steps_of_stage) CHECK(steps > 100);
+}
+
+TEST_CASE("one hash for every search, number of threads and skin") {
+    struct Choice {
+        int threads;
+        double skin;  // m; < 0: automatic
+    };
+    for (const char* search : {"direct", "dess", "isu"})
+        for (const auto& [threads, skin] : {Choice{1, -1.0}, Choice{2, -1.0}, Choice{1, 0.0}, Choice{2, 0.4}}) {
+            Scenario scenario = scenario_of(slope);
+            scenario.run.search = search;
+            scenario.run.threads = threads;
+            if (skin >= 0.0) scenario.run.skin = skin;
+            CAPTURE(search, threads, skin);
+            const Trace found = trace(scenario);
+            CHECK(found.hashes == reference().hashes);
+            if (skin == 0.0) CHECK(found.refreshes > found.steps / 2);
+            if (skin > 0.0) CHECK(found.refreshes < reference().refreshes);
+        }
+}
+
+TEST_CASE("scratch may be thrown away at any step") {
+    Random random(11);
+    int dropped = 0;
+    const Trace found = trace(scenario_of(slope), [&](WholeRun& r) {
+        if (random.bits() % 20 != 0) return;
+        r.simulation().drop_scratch();
+        ++dropped;
+    });
+    CHECK(dropped > 10);
+    CHECK(found.hashes == reference().hashes);
+}
+
+TEST_CASE("a run saved in the middle of its stages and read back goes on as if it had not stopped") {
+    const Folder folder;
+    const std::string path = folder / "slope.restart.h5";
+    Random random(7);
+    std::set<int> stages;
+    int restarts = 0;
+    const Trace found = trace(scenario_of(slope), [&](WholeRun& r) {
+        if (random.bits() % 60 != 0) return;
+        write_restart(path, RestartInfo{}, r.state());
+        State saved = read_restart(path, r.model());
+        r.go_on_from(std::move(saved));
+        stages.insert(r.state().stage);
+        ++restarts;
+    });
+    CHECK(restarts > 5);
+    CHECK(stages.size() == 3);
+    CHECK(found.hashes == reference().hashes);
+}
