@@ -7,7 +7,6 @@ namespace {
 
 struct Line {  // depth below edge k of P along an edge of Q: D + s t, t in [0, 1]
     double depth, slope;
-    bool boundary;  // a real edge: counts in the minimum
 };
 
 // Adds -sign/2 x Int d_P ds x normal over all edges of Q inside P. Q is shifted by (qx, qy), P by (px, py), both from the
@@ -28,7 +27,7 @@ void integrate(const PlacedPart& q, double qx, double qy, const PlacedPart& p, d
         for (int k = 0; k < p.n && lo < hi; ++k) {
             const double depth = p.offset[k] - (p.normal[k].x() * ax + p.normal[k].y() * ay);
             const double slope = -(p.normal[k].x() * ux + p.normal[k].y() * uy);
-            lines[k] = {depth, slope, !p.internal[k]};
+            lines[k] = {depth, slope};
             const double end = depth + slope;
             if (depth > 0.0 && end > 0.0) continue;  // the usual case: edge k does not cut this edge
             if (depth <= 0.0 && end <= 0.0)
@@ -40,21 +39,19 @@ void integrate(const PlacedPart& q, double qx, double qy, const PlacedPart& p, d
         }
         if (!(lo < hi)) continue;
 
-        // Walk along the lower envelope of the boundary lines from lo to hi.
+        // Walk along the lower envelope of the lines from lo to hi.
         int k = -1;
         double best = 0.0;
         for (int j = 0; j < p.n; ++j) {
-            if (!lines[j].boundary) continue;
             const double depth = lines[j].depth + lines[j].slope * lo;
             if (k < 0 || depth < best || (depth == best && lines[j].slope < lines[k].slope)) best = depth, k = j;
         }
-        if (k < 0) continue;
         double t = lo;
         while (t < hi) {
             double end = hi;
             int following = -1;
             for (int j = 0; j < p.n; ++j) {
-                if (!lines[j].boundary || !(lines[j].slope < lines[k].slope)) continue;
+                if (!(lines[j].slope < lines[k].slope)) continue;
                 const double crossing = (lines[j].depth - lines[k].depth) / (lines[k].slope - lines[j].slope);
                 if (crossing < end || (crossing == end && following >= 0 && lines[j].slope < lines[following].slope)) {
                     end = std::max(crossing, t);
@@ -113,11 +110,10 @@ double depth_integral(const Polygon& polygon, double nx, double ny, double offse
 double potential(const Polygon& region, const PlacedPart& p, double px, double py) {
     double sum = 0.0;
     for (int k = 0; k < p.n; ++k) {
-        if (p.internal[k]) continue;
         const double offset_k = p.offset[k] + p.normal[k].x() * px + p.normal[k].y() * py;
         Polygon cell = region;
         for (int j = 0; j < p.n && cell.size() > 2; ++j) {
-            if (j == k || p.internal[j]) continue;
+            if (j == k) continue;
             const double offset_j = p.offset[j] + p.normal[j].x() * px + p.normal[j].y() * py;
             // offset_k - n_k.x <= offset_j - n_j.x
             cell = clip(cell, p.normal[j].x() - p.normal[k].x(), p.normal[j].y() - p.normal[k].y(), offset_j - offset_k);

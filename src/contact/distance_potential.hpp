@@ -11,7 +11,8 @@ namespace talus {
 /// pressure (kn/2) x depth in the other part:
 ///     F_B = -(kn/2) Sum_{e in dB} n_e Int_{e inside A} d_A ds + (kn/2) Sum_{e in dA} n_e Int_{e inside B} d_B ds .
 /// A true potential without corner cases; a face with overlap u gets kn u per metre and its exact moment. Edges between two
-/// parts of one block bound the region of integration but are no boundary of the block.
+/// parts of one block bound the depth of each part, so that no depth is ever measured to a boundary far away; as edges under
+/// pressure they are left out, because what they would carry on both their sides cancels exactly.
 /// The form is Munjiza's (2004) with the distance potential of Liu et al. (2017).
 Patch distance_potential(const PlacedPart& a, const PlacedPart& b, double dx, double dy);
 
