@@ -29,14 +29,37 @@ void listen_for_signals() {
     std::signal(SIGXFSZ, SIG_IGN);
 }
 
-Scenario pick(const RunArguments& arguments) {
-    if (arguments.case_name.empty()) return read_scenario(arguments.scenario, arguments.overrides);
+Scenario row_named(std::vector<Case> rows, const std::string& name, const std::string& file) {
     std::string names;
-    for (Case& row : read_cases(arguments.scenario, arguments.overrides)) {
-        if (row.name == arguments.case_name) return std::move(row.scenario);
+    for (Case& row : rows) {
+        if (row.name == name) return std::move(row.scenario);
         names += (names.empty() ? "" : ", ") + row.name;
     }
-    throw InputError(arguments.scenario + ": there is no case '" + arguments.case_name + "'; there are: " + names);
+    throw InputError(file + ": there is no case '" + name + "'; there are: " + names);
+}
+
+Scenario pick(const RunArguments& arguments) {
+    if (arguments.case_name.empty()) return read_scenario(arguments.scenario, arguments.overrides);
+    return row_named(read_cases(arguments.scenario, arguments.overrides), arguments.case_name, arguments.scenario);
+}
+
+// What was asked for on the command line, as it is noted in the files: the overrides, and the row of `cases`.
+const std::string case_mark = "case: ";
+
+std::vector<std::string> note(const RunArguments& arguments) {
+    std::vector<std::string> notes = arguments.overrides;
+    if (!arguments.case_name.empty()) notes.push_back(case_mark + arguments.case_name);
+    return notes;
+}
+
+Scenario read_noted(const RestartInfo& info) {
+    std::vector<std::string> overrides = info.overrides;
+    const std::string folder = std::filesystem::path(info.scenario_file).parent_path().string();
+    if (overrides.empty() || overrides.back().rfind(case_mark, 0) != 0)
+        return read_scenario_text(info.scenario_text, info.scenario_file, folder, overrides);
+    const std::string name = overrides.back().substr(case_mark.size());
+    overrides.pop_back();
+    return row_named(read_cases_text(info.scenario_text, info.scenario_file, folder, overrides), name, info.scenario_file);
 }
 
 void print_scene(const Simulation& simulation) {
@@ -120,7 +143,7 @@ int run_command(const RunArguments& arguments) {
     simulation.begin_stage();  // before any file is touched: the time step may be refused
     check_probes(simulation);
     listen_for_signals();
-    Recorder recorder(output, simulation, arguments.overrides);
+    Recorder recorder(output, simulation, note(arguments));
     std::unique_ptr<Watch> watch;
     if (!scenario.expect.empty())
         watch = std::make_unique<Watch>(scenario.expect, simulation.model(), simulation.first_state());
@@ -129,8 +152,7 @@ int run_command(const RunArguments& arguments) {
 
 int resume_command(const std::string& results, int threads) {
     const RestartInfo info = read_restart_info(restart_path(results));
-    Scenario scenario = read_scenario_text(info.scenario_text, info.scenario_file,
-                                           std::filesystem::path(info.scenario_file).parent_path().string());
+    Scenario scenario = read_noted(info);
     if (scenario.hash != info.scenario_hash)
         throw InputError(restart_path(results) + ": the scenario in it reads differently with this version");
     if (threads > 0) scenario.run.threads = threads;

@@ -47,7 +47,7 @@ RestartInfo restart_info(const Simulation& simulation, const std::vector<std::st
     const Scenario& scenario = simulation.scenario();
     RestartInfo info;
     info.scenario_file = scenario.file;
-    info.scenario_text = scenario.canonical_json;  // with overrides and the row of `cases` worked in
+    info.scenario_text = scenario.text;
     info.scenario_hash = scenario.hash;
     info.overrides = overrides;
     return info;
@@ -176,11 +176,16 @@ void check_probes(const Simulation& simulation) {
         if (expect.against) probes.push_back(*expect.against);
     }
     std::vector<Fault> faults;
-    for (const ProbeSpec& probe : probes) try {
+    for (const ProbeSpec& probe : probes) {
+        try {
             make_probe(probe, simulation.model(), simulation.first_state());
         } catch (const InputError& error) {
-            faults.insert(faults.end(), error.faults().begin(), error.faults().end());
+            for (const Fault& fault : error.faults()) {  // several quantities of one place have one fault in common
+                const auto same = [&](const Fault& f) { return f.where.line == fault.where.line && f.message == fault.message; };
+                if (std::none_of(faults.begin(), faults.end(), same)) faults.push_back(fault);
+            }
         }
+    }
     if (!faults.empty()) throw InputError(std::move(faults));
 }
 
