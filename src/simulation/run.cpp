@@ -176,11 +176,15 @@ void check_probes(const Simulation& simulation) {
         if (expect.against) probes.push_back(*expect.against);
     }
     std::vector<Fault> faults;
-    for (const ProbeSpec& probe : probes) try {
+    for (const ProbeSpec& probe : probes) {
+        try {
             make_probe(probe, simulation.model(), simulation.first_state());
         } catch (const InputError& error) {
-            faults.insert(faults.end(), error.faults().begin(), error.faults().end());
+            const Fault& found = error.faults().front();  // a history reads several quantities at one place: said once
+            if (faults.empty() || faults.back().where.line != found.where.line || faults.back().message != found.message)
+                faults.push_back(found);
         }
+    }
     if (!faults.empty()) throw InputError(std::move(faults));
 }
 
