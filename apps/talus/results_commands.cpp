@@ -13,7 +13,7 @@ int info_command(const std::string& results) {
     const ResultsReader reader(results);
     std::printf("%s: %s\n", results.c_str(), reader.status().c_str());
     for (const auto& [name, value] : reader.attributes()) std::printf("  %-18s %s\n", name.c_str(), value.c_str());
-    for (const std::string& override : reader.overrides()) std::printf("  %-18s %s\n", "--set", override.c_str());
+    for (const std::string& change : reader.overrides()) std::printf("  %-18s %s\n", "set", change.c_str());
     const std::vector<double> times = reader.frame_times();
     std::printf("  %-18s %lld", "blocks", static_cast<long long>(reader.blocks()));
     std::printf("\n  %-18s %zu", "frames", times.size());

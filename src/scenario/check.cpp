@@ -153,6 +153,7 @@ private:
     Value check_names(const Value& value, const spec::Shape& shape, const std::string& path) {
         if (!value.is(Value::Kind::map)) return refuse_kind(value, shape, path);
         Value out = value;
+        out.of_names = true;
         for (Entry& entry : out.entries) entry.value = check(entry.value, shape.of.front(), path + "." + entry.key);
         return out;
     }

@@ -263,7 +263,7 @@ struct Scenario {
     RecordSpec record;
     std::vector<ExpectSpec> expect;
     std::string text;                        // the file as read, with overrides noted in a last comment
-    std::string canonical_json;              // resolved scenario: sorted keys, every default, %.17g
+    std::string canonical_json;              // resolved scenario: sorted keys (names in their order), every default, %.17g
     std::uint64_t hash = 0;                  // FNV-1a of canonical_json
 };
 

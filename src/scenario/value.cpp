@@ -80,7 +80,8 @@ std::string json_list(const Value& value) {
 std::string json_map(const Value& value) {
     std::vector<const Entry*> sorted;
     for (const Entry& entry : value.entries) sorted.push_back(&entry);
-    std::sort(sorted.begin(), sorted.end(), [](const Entry* a, const Entry* b) { return a->key < b->key; });
+    if (!value.of_names)
+        std::sort(sorted.begin(), sorted.end(), [](const Entry* a, const Entry* b) { return a->key < b->key; });
     std::string out = "{";
     for (const Entry* entry : sorted) {
         if (out.size() > 1) out += ',';

@@ -21,6 +21,7 @@ struct Value {
     double number = 0.0;         // number; boolean: 0 or 1
     std::vector<Value> items;    // list
     std::vector<Entry> entries;  // map, in the order of the file
+    bool of_names = false;       // map: keys are names given by the author, and their order says something
 
     bool is(Kind k) const { return kind == k; }
     bool is_null() const;  // an empty value, null or ~
@@ -47,7 +48,7 @@ struct Entry {
 std::optional<double> as_number(const std::string& text);
 std::optional<bool> as_boolean(const std::string& text);  // true, True, TRUE, false, False, FALSE
 
-/// Sorted keys, numbers as %.17g, no white space: equal trees give equal texts. Raw scalars get the type YAML gives them.
+/// Sorted keys (names in their order), numbers as %.17g, no white space: equal trees give equal texts. Raw scalars get the type YAML gives them.
 std::string to_json(const Value& value);
 
 }  // namespace talus

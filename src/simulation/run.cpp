@@ -180,10 +180,9 @@ void check_probes(const Simulation& simulation) {
         try {
             make_probe(probe, simulation.model(), simulation.first_state());
         } catch (const InputError& error) {
-            for (const Fault& fault : error.faults()) {  // several quantities of one place have one fault in common
-                const auto same = [&](const Fault& f) { return f.where.line == fault.where.line && f.message == fault.message; };
-                if (std::none_of(faults.begin(), faults.end(), same)) faults.push_back(fault);
-            }
+            const Fault& found = error.faults().front();  // a history reads several quantities at one place: said once
+            if (faults.empty() || faults.back().where.line != found.where.line || faults.back().message != found.message)
+                faults.push_back(found);
         }
     }
     if (!faults.empty()) throw InputError(std::move(faults));

@@ -11,8 +11,8 @@ import tempfile
 import time
 import unittest
 
-TALUS = pathlib.Path(os.environ.get("TALUS", "talus"))
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
+TALUS = pathlib.Path(os.environ.get("TALUS", SOURCE / "build/release/bin/talus"))
 
 INCLINE = """\
 title: Block on an incline

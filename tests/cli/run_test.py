@@ -107,7 +107,7 @@ class ExitCodes(Program):
 
     def test_4_if_the_file_may_not_grow_and_what_is_complete_stays(self):
         self.write("slope.yaml", SLOPE)
-        limit = 1_000_000
+        limit = 1_200_000
 
         def small_files():
             resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))

@@ -327,6 +327,11 @@ TEST_CASE("the canonical JSON holds every default and reads as the same scenario
     CHECK(again.canonical_json == s.canonical_json);
     CHECK(again.hash == s.hash);
     CHECK(again.blocks.size() == s.blocks.size());
+    // What refers to joints and materials by number means the same, and so does the order of regions that overlap.
+    for (std::size_t i = 0; i < s.joints.size(); ++i) CHECK(again.joints.at(i).name == s.joints[i].name);
+    for (std::size_t i = 0; i < s.materials.size(); ++i) CHECK(again.materials.at(i).name == s.materials[i].name);
+    for (std::size_t i = 0; i < s.rock->regions.size(); ++i)
+        CHECK(again.rock->regions.at(i).name == s.rock->regions[i].name);
     CHECK(s.canonical_json.find(R"("step_fraction":0.80000000000000004)") != std::string::npos);
     CHECK(s.canonical_json.find(R"("default":"floor")") != std::string::npos);
 }
