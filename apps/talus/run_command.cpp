@@ -136,13 +136,13 @@ std::string default_output(const std::string& scenario) {
 
 int run_command(const RunArguments& arguments) {
     const Scenario scenario = pick(arguments);
+    listen_for_signals();  // before any file can be seen: who waits for one may interrupt at once
     const std::string output = choose_output_path(
         arguments.output.empty() ? default_output(arguments.scenario) : arguments.output, arguments.force);
     Simulation simulation(scenario, build(scenario));
     print_scene(simulation);
     simulation.begin_stage();  // before any file is touched: the time step may be refused
     check_probes(simulation);
-    listen_for_signals();
     Recorder recorder(output, simulation, note(arguments));
     std::unique_ptr<Watch> watch;
     if (!scenario.expect.empty())
