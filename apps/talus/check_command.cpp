@@ -31,13 +31,14 @@ void print_blocks(const Simulation& simulation) {
         held += model.blocks.held(b);
         concave += model.blocks.first_part[b + 1] - model.blocks.first_part[b] > 1;
     }
-    std::printf("blocks         %d, of them %d held, %d concave (%d convex parts in all)\n", model.blocks.size(), held, concave,
-                model.parts.size());
+    std::printf("blocks         %d, of them %d held, %d concave (%d convex parts in all)\n", model.blocks.size(), held,
+                concave, model.parts.size());
     std::printf("  by size      area %s smallest, %s median, %s largest; sum %s\n", number(area.front(), "m2").c_str(),
                 number(quantile(0.5), "m2").c_str(), number(area.back(), "m2").c_str(),
                 number(std::accumulate(area.begin(), area.end(), 0.0), "m2").c_str());
     for (double upper = std::pow(10.0, std::floor(std::log10(area.front())) + 1.0);; upper *= 10.0) {
-        const auto n = std::upper_bound(area.begin(), area.end(), upper) - std::upper_bound(area.begin(), area.end(), upper / 10);
+        const auto n =
+            std::upper_bound(area.begin(), area.end(), upper) - std::upper_bound(area.begin(), area.end(), upper / 10);
         if (n > 0) std::printf("               %8td of %.0e to %.0e m2\n", n, upper / 10, upper);
         if (upper >= area.back()) break;
     }
@@ -49,10 +50,10 @@ void print_blocks(const Simulation& simulation) {
 void print_cut(const BuildReport& report) {
     const CutReport& cut = report.cut;
     if (cut.outline_area <= 0.0) return;
-    std::printf("cut            area of the outline less holes %.12g m2, sum of blocks differs by %.1g of it\n", cut.outline_area,
-                std::abs(cut.blocks_area - cut.outline_area) / cut.outline_area);
-    std::printf("               %d dangling ends pruned, %d slivers merged (%s), %d dropped, %d concave, %d islands\n", cut.dangling,
-                cut.merged, number(cut.merged_area, "m2").c_str(), cut.dropped, cut.concave, cut.islands);
+    std::printf("cut            area of the outline less holes %.12g m2, sum of blocks differs by %.1g of it\n",
+                cut.outline_area, std::abs(cut.blocks_area - cut.outline_area) / cut.outline_area);
+    std::printf("               %d dangling ends pruned, %d slivers merged (%s), %d dropped, %d concave, %d islands\n",
+                cut.dangling, cut.merged, number(cut.merged_area, "m2").c_str(), cut.dropped, cut.concave, cut.islands);
     for (std::size_t i = 0; i < std::min<std::size_t>(cut.merged_at.size(), 5); ++i)
         std::printf("               sliver at (%.6g, %.6g)\n", cut.merged_at[i].x(), cut.merged_at[i].y());
     if (report.trace_count > 0)
@@ -120,13 +121,14 @@ void print_cost(Simulation& simulation) {
         open_end = open_end || until.equilibrium;
     }
     std::printf("cost           %d stage%s, %s%.3g steps, %s per step, %s%s in all\n", stages, stages == 1 ? "" : "s",
-                open_end ? "at most " : "", length / dt, number(1e3 * per_step, "ms").c_str(), open_end ? "at most " : "about ",
-                number(length / dt * per_step, "s").c_str());
+                open_end ? "at most " : "", length / dt, number(1e3 * per_step, "ms").c_str(),
+                open_end ? "at most " : "about ", number(length / dt * per_step, "s").c_str());
     const double frames = scenario.record.frame_every && simulation.recorded_time() > 0.0
                               ? simulation.recorded_time() / *scenario.record.frame_every
                               : scenario.record.frame_count.value_or(50);
-    const double bytes = 60.0 * model.blocks.size() + 12.0 * model.corners.size() +
-                         (scenario.record.contacts ? 100.0 * static_cast<double>(simulation.state().contacts.list.size()) / 2 : 0.0);
+    const double bytes =
+        60.0 * model.blocks.size() + 12.0 * model.corners.size() +
+        (scenario.record.contacts ? 100.0 * static_cast<double>(simulation.state().contacts.list.size()) / 2 : 0.0);
     std::printf("memory         %s now; results about %s for %.0f frames\n", number(peak_memory() / 1e6, "MB").c_str(),
                 number(frames * bytes / 1e6, "MB").c_str(), frames);
 }

@@ -20,7 +20,8 @@ void add_overrides(CLI::App& command, std::vector<std::string>& overrides) {
         ->allow_extra_args(false);
     const auto shorthand = [&](const char* option, const char* key, const char* help) {
         command.add_option_function<std::string>(
-            option, [&overrides, key](const std::string& value) { overrides.push_back(std::string(key) + "=" + value); }, help);
+            option, [&overrides, key](const std::string& value) { overrides.push_back(std::string(key) + "=" + value); },
+            help);
     };
     shorthand("--solver", "run.solver", "auto or explicit");
     shorthand("--search", "run.search", "isu, dess or direct; never changes a result");
@@ -48,7 +49,8 @@ int main(int argc, char** argv) {
     CheckArguments check;
     CLI::App* check_app = app.add_subcommand("check", "what is known before a run: faults, blocks, joints, step, cost");
     check_app->add_option("scenario", check.scenario, "scenario file (YAML)");
-    check_app->add_flag("--resolved", check.resolved, "print the scenario with every default as canonical JSON, nothing else");
+    check_app->add_flag("--resolved", check.resolved,
+                        "print the scenario with every default as canonical JSON, nothing else");
     check_app->add_option("--geometry", check.geometry, "write the blocks as a result file with one frame, for a picture");
     check_app->add_flag("--schema", check.schema, "print the JSON Schema of scenario files, for editors");
     add_overrides(*check_app, check.overrides);

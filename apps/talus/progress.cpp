@@ -40,8 +40,8 @@ void Progress::show(const Simulation& simulation) {
         std::snprintf(end, sizeof end, " of %.4g s, ETA %.0f s", *until.time,
                       elapsed * std::max(*until.time / state.stage_time - 1.0, 0.0));
     std::fprintf(stderr, "%s%s: t = %.5g s%s, %.0f steps/s, unbalanced %.1e%s", terminal_ ? "\r\033[K" : "",
-                 simulation.stage().name.c_str(), state.stage_time, end, rate,
-                 unbalanced_ratio(simulation.model(), state), terminal_ ? "" : "\n");
+                 simulation.stage().name.c_str(), state.stage_time, end, rate, unbalanced_ratio(simulation.model(), state),
+                 terminal_ ? "" : "\n");
     std::fflush(stderr);
 }
 

@@ -128,9 +128,7 @@ int carry_out(Simulation& simulation, Recorder& recorder, Watch* watch, Entry en
     return failed > 0 ? not_met : ok;
 }
 
-std::string default_output(const std::string& scenario) {
-    return std::filesystem::path(scenario).stem().string() + ".h5";
-}
+std::string default_output(const std::string& scenario) { return std::filesystem::path(scenario).stem().string() + ".h5"; }
 
 }  // namespace
 

@@ -61,16 +61,17 @@ void print_overlap(const Simulation& simulation) {
     std::printf("  largest overlap %s: %.2g of the shortest edge (%s)\n", number(deepest, "m").c_str(), deepest / shortest,
                 number(shortest, "m").c_str());
     if (deepest > 0.05 * thin)
-        std::printf("  warning: an overlap of %.0f %% of the thinner block between blocks %d and %d; a normal stiffness of %s "
-                    "would keep it below 1 %%\n",
-                    100.0 * deepest / thin, model.parts.block[worst->part_a], model.parts.block[worst->part_b],
-                    number(model.joints[worst->joint].kn * deepest / (0.01 * thin), "Pa/m").c_str());
+        std::printf(
+            "  warning: an overlap of %.0f %% of the thinner block between blocks %d and %d; a normal stiffness of %s "
+            "would keep it below 1 %%\n",
+            100.0 * deepest / thin, model.parts.block[worst->part_a], model.parts.block[worst->part_b],
+            number(model.joints[worst->joint].kn * deepest / (0.01 * thin), "Pa/m").c_str());
 }
 
 void print_energy(const Simulation& simulation) {
     const Energies e = simulation.energies();
-    const double turned_over =
-        std::max({std::abs(e.gravity), std::abs(e.loads), std::abs(e.driven), e.kinetic, e.friction, e.strain_normal, 1e-300});
+    const double turned_over = std::max(
+        {std::abs(e.gravity), std::abs(e.loads), std::abs(e.driven), e.kinetic, e.friction, e.strain_normal, 1e-300});
     std::printf("  energy         kinetic %s, stored in joints %s, friction %s, damping %s, work of gravity %s\n",
                 number(e.kinetic, "J").c_str(), number(e.strain_normal + e.strain_shear, "J").c_str(),
                 number(e.friction, "J").c_str(), number(e.contact_damping + e.local_damping, "J").c_str(),
@@ -87,7 +88,8 @@ void print_timing(const Simulation& simulation, double wall_time) {
                 static_cast<double>(simulation.steps_done()) / std::max(all, 1e-9),
                 static_cast<long long>(simulation.refreshes()));
     for (std::size_t i = 0; i < seconds.size(); ++i)
-        std::printf(" %s %.1f %%%s", part_names[i], 100.0 * seconds[i] / std::max(all, 1e-9), i + 1 < seconds.size() ? "," : "\n");
+        std::printf(" %s %.1f %%%s", part_names[i], 100.0 * seconds[i] / std::max(all, 1e-9),
+                    i + 1 < seconds.size() ? "," : "\n");
 }
 
 }  // namespace
@@ -110,7 +112,8 @@ void print_summary(const Simulation& simulation, double wall_time) {
     print_movers(simulation);
     print_overlap(simulation);
     print_energy(simulation);
-    std::printf("  unbalanced     %.2g of the mean contact force\n", unbalanced_ratio(simulation.model(), simulation.state()));
+    std::printf("  unbalanced     %.2g of the mean contact force\n",
+                unbalanced_ratio(simulation.model(), simulation.state()));
     if (simulation.state().step_halvings > 0)
         std::printf("  note: the step is halved %d times now, because blocks move fast against the thinnest one\n",
                     simulation.state().step_halvings);

@@ -45,7 +45,8 @@ void verify_case(const std::string& file, const Case& row, Tally& tally) {
     failed = static_cast<int>(std::count_if(verdicts.begin(), verdicts.end(), [](const Verdict& v) { return !v.passed; }));
     const bool bad = failed > 0 || !trouble.empty();
     std::printf("%s %s%s%s  (%.2f s)%s%s\n", bad ? "FAILED" : "ok    ", std::filesystem::path(file).stem().c_str(),
-                row.name.empty() ? "" : " / ", row.name.c_str(), clock.seconds(), trouble.empty() ? "" : ": ", trouble.c_str());
+                row.name.empty() ? "" : " / ", row.name.c_str(), clock.seconds(), trouble.empty() ? "" : ": ",
+                trouble.c_str());
     print_verdicts(verdicts, "    ");
     std::fflush(stdout);
     ++tally.cases;

@@ -13,9 +13,10 @@
 namespace talus {
 namespace {
 
-constexpr int chunk = 256;            // blocks per task; fixed, so that sums do not depend on the number of threads
-// Depth, as a share of memory_reach, up to which parts only touch: 1e-12 of a block. The corners of cut rock overlap by their
-// rounding; the force of such a corner (kn depth^2, 1e-14 N) is nothing, but half of all pairs would go through the general law.
+constexpr int chunk = 256;  // blocks per task; fixed, so that sums do not depend on the number of threads
+// Depth, as a share of memory_reach, up to which parts only touch: 1e-12 of a block. The corners of cut rock overlap by
+// their rounding; the force of such a corner (kn depth^2, 1e-14 N) is nothing, but half of all pairs would go through the
+// general law.
 constexpr double touch_share = 1e-10;
 constexpr double smooth_cos = 0.985;  // edges that meet at less than 10 degrees may not use the face path: which of them is
                                       // in contact would depend on history
@@ -134,7 +135,8 @@ private:
         return n.x() * p.x() + n.y() * p.y() < smooth_cos && n.x() * q.x() + n.y() * q.y() < smooth_cos;
     }
 
-    FaceState try_face(Contact& c, const PlacedPart& a, const PlacedPart& b, double dx, double dy, int ea, int eb, Normal& out) {
+    FaceState try_face(Contact& c, const PlacedPart& a, const PlacedPart& b, double dx, double dy, int ea, int eb,
+                       Normal& out) {
         FaceMemory memory;
         const bool remembers = c.face >= 0;
         if (remembers) {

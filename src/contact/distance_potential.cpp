@@ -11,8 +11,8 @@ struct Line {  // depth below edge k of P along an edge of Q: D + s t, t in [0, 
 
 // Adds -sign/2 x Int d_P ds x normal over all edges of Q inside P. Q is shifted by (qx, qy), P by (px, py), both from the
 // centroid of a; sign is +1 where Q is block b (force on b) and -1 where Q is block a (the reaction falls on b).
-void integrate(const PlacedPart& q, double qx, double qy, const PlacedPart& p, double px, double py, double sign, double dx, double dy,
-               Patch& patch, double& weight) {
+void integrate(const PlacedPart& q, double qx, double qy, const PlacedPart& p, double px, double py, double sign, double dx,
+               double dy, Patch& patch, double& weight) {
     constexpr int few = 16;  // parts with more edges than this are rare and may allocate
     Line some[few];
     std::vector<Line> many(p.n > few ? p.n : 0);

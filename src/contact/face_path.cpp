@@ -132,7 +132,8 @@ double end_thrust(double u, double initial, bool bonded, double corner_gap) {
 
 }  // namespace
 
-FacePatch face_contact(const PlacedPart& a, const PlacedPart& b, double dx, double dy, int ea, int eb, const FaceMemory* memory) {
+FacePatch face_contact(const PlacedPart& a, const PlacedPart& b, double dx, double dy, int ea, int eb,
+                       const FaceMemory* memory) {
     FacePatch patch;
     Window w;
     if (!make_window(a, b, dx, dy, ea, eb, memory != nullptr, w)) return patch;
@@ -179,7 +180,8 @@ FacePatch face_contact(const PlacedPart& a, const PlacedPart& b, double dx, doub
     return patch;
 }
 
-double face_energy(const PlacedPart& a, const PlacedPart& b, double dx, double dy, int ea, int eb, const FaceMemory* memory) {
+double face_energy(const PlacedPart& a, const PlacedPart& b, double dx, double dy, int ea, int eb,
+                   const FaceMemory* memory) {
     Window w;
     if (!make_window(a, b, dx, dy, ea, eb, memory != nullptr, w)) return 0.0;
     double energy = 0.0;

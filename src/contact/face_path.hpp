@@ -34,7 +34,8 @@ struct FacePatch : Patch {
 /// bisector of the two faces plus, at each end of the window, the thrust (kn/4) u^2 of the side edge whose corner lies
 /// there: without it a block tilted by theta would feel a false tangential force N theta / 2. Differs from the general
 /// distance potential by O(u / length) in stiffness, and by higher order in direction.
-FacePatch face_contact(const PlacedPart& a, const PlacedPart& b, double dx, double dy, int ea, int eb, const FaceMemory* memory);
+FacePatch face_contact(const PlacedPart& a, const PlacedPart& b, double dx, double dy, int ea, int eb,
+                       const FaceMemory* memory);
 
 /// E / kn of a loaded face, m3.
 double face_energy(const PlacedPart& a, const PlacedPart& b, double dx, double dy, int ea, int eb, const FaceMemory* memory);

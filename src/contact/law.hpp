@@ -28,9 +28,9 @@ struct ShearResult {
 /// |T| <= c L_bonded + N tan(phi); elastic below with ks x length. A contact that shrinks takes the shear stress of the part
 /// that is lost with it, otherwise friction would make energy; a part that is new carries none. What counts is the length
 /// that is sheared, T^2 / (2 ks E) with the stored energy E (at most the contact length, by Cauchy-Schwarz): only when the
-/// contact becomes shorter than that does T fall. A length that trembles therefore costs nothing, where T x length/old length
-/// would bleed shear force at every tremor.
-/// Friction work is taken with the mean shear force of the step, so that shear work = stored + dissipated + released exactly.
+/// contact becomes shorter than that does T fall. A length that trembles therefore costs nothing, where T x length/old
+/// length would bleed shear force at every tremor. Friction work is taken with the mean shear force of the step, so that
+/// shear work = stored + dissipated + released exactly.
 struct MohrCoulomb {
     ShearResult operator()(const Joint& joint, const ShearStep& step, Contact& c) const {
         ShearResult result;

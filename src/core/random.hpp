@@ -9,9 +9,9 @@ namespace talus {
 class Random {
 public:
     explicit Random(std::uint64_t seed) : state_(seed) {}
-    std::uint64_t bits();                              // SplitMix64 (Steele, Lea & Flood 2014)
+    std::uint64_t bits();                                                       // SplitMix64 (Steele, Lea & Flood 2014)
     double uniform() { return static_cast<double>(bits() >> 11) * 0x1.0p-53; }  // [0, 1)
-    double normal();                                   // mean 0, deviation 1 (Marsaglia polar method)
+    double normal();  // mean 0, deviation 1 (Marsaglia polar method)
 private:
     std::uint64_t state_;
 };

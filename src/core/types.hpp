@@ -1,4 +1,5 @@
-// Words shared by every room. SI units, plane problem of 1 m thickness, y up, angles counter-clockwise, compression positive.
+// Words shared by every room. SI units, plane problem of 1 m thickness, y up, angles counter-clockwise, compression
+// positive.
 #pragma once
 
 #include <Eigen/Core>
@@ -20,12 +21,8 @@ using Polygon = std::vector<Vec2>;  // corners in m, counter-clockwise unless sa
 struct Box {
     double xmin, ymin, xmax, ymax;
 
-    bool overlaps(const Box& o) const {
-        return xmin <= o.xmax && o.xmin <= xmax && ymin <= o.ymax && o.ymin <= ymax;
-    }
-    bool contains(const Box& o) const {
-        return xmin <= o.xmin && ymin <= o.ymin && xmax >= o.xmax && ymax >= o.ymax;
-    }
+    bool overlaps(const Box& o) const { return xmin <= o.xmax && o.xmin <= xmax && ymin <= o.ymax && o.ymin <= ymax; }
+    bool contains(const Box& o) const { return xmin <= o.xmin && ymin <= o.ymin && xmax >= o.xmax && ymax >= o.ymax; }
     Box grown(double by) const { return {xmin - by, ymin - by, xmax + by, ymax + by}; }
 };
 

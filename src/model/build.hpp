@@ -11,16 +11,16 @@
 
 namespace talus {
 
-struct BuildReport {                       // what `talus check` tells
+struct BuildReport {  // what `talus check` tells
     CutReport cut;
     int trace_count = 0, tips_extended = 0, corners_snapped = 0, trace_junctions = 0;
     std::vector<std::string> warnings;
-    std::vector<int> faces_per_joint;      // [nj] touching part pairs by the joint they got, in the order of Model::joints
+    std::vector<int> faces_per_joint;  // [nj] touching part pairs by the joint they got, in the order of Model::joints
 };
 
 struct Scene {
     Model model;
-    State state;                           // contacts holds the bonded and prestressed faces; loads are zero
+    State state;  // contacts holds the bonded and prestressed faces; loads are zero
     BuildReport report;
 };
 

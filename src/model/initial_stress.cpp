@@ -147,7 +147,8 @@ std::vector<Contact> first_contacts(const Model& model) {
         contact.length = length;
         contact.normal_force = 0.5 * sum * length;
         contact.shear_force = face.shear_force0;
-        contact.shear_energy = 0.5 * face.shear_force0 * face.shear_force0 / (model.joints[face.joint].ks * (face.s1 - face.s0));
+        contact.shear_energy =
+            0.5 * face.shear_force0 * face.shear_force0 / (model.joints[face.joint].ks * (face.s1 - face.s0));
         contact.point =
             model.blocks.start[model.parts.block[face.part_b]] + face.arm_b0 + share * (face.arm_b1 - face.arm_b0);
         contact.normal = model.corners.normal[face.edge_a];

@@ -82,8 +82,7 @@ double max_speed(const Model& model, const State& state) {
     double fastest = 0.0;
     for (BlockId b = 0; b < model.blocks.size(); ++b) {
         const double spin = std::abs(state.motion.spin[b]);
-        if (!state.removed[b])
-            fastest = std::max(fastest, state.motion.velocity[b].norm() + spin * model.blocks.radius[b]);
+        if (!state.removed[b]) fastest = std::max(fastest, state.motion.velocity[b].norm() + spin * model.blocks.radius[b]);
     }
     return fastest;
 }

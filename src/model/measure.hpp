@@ -9,9 +9,9 @@ namespace talus {
 /// J per m of thickness. Stored energies at this instant, dissipated and external work since the last reset.
 struct Energies {
     double kinetic = 0.0;
-    double strain_normal = 0.0, strain_shear = 0.0;      // stored in the joints
+    double strain_normal = 0.0, strain_shear = 0.0;                                     // stored in the joints
     double friction = 0.0, contact_damping = 0.0, local_damping = 0.0, released = 0.0;  // dissipated, >= 0
-    double gravity = 0.0, loads = 0.0, driven = 0.0;      // work done on the blocks
+    double gravity = 0.0, loads = 0.0, driven = 0.0;                                    // work done on the blocks
     /// kinetic + stored + dissipated - external work: constant up to the oscillation of the integrator, (omega dt)^2.
     double total() const {
         return kinetic + strain_normal + strain_shear + friction + contact_damping + local_damping + released - gravity -
@@ -22,9 +22,9 @@ struct Energies {
 /// Of the axes that are neither held nor driven, J.
 double kinetic_energy(const Model& model, const State& state);
 
-/// max |out-of-balance force| over blocks that can move / mean over the same blocks of the sum of contact force magnitudes (or
-/// of the weights, whichever is larger); torques count divided by the radius of gyration, held and driven axes not at all.
-/// Dimensionless; 0 in equilibrium, infinite if nothing but an applied load acts.
+/// max |out-of-balance force| over blocks that can move / mean over the same blocks of the sum of contact force magnitudes
+/// (or of the weights, whichever is larger); torques count divided by the radius of gyration, held and driven axes not at
+/// all. Dimensionless; 0 in equilibrium, infinite if nothing but an applied load acts.
 double unbalanced_ratio(const Model& model, const State& state);
 
 /// Displacement since the start (or the last reset) of the point of block b that was at `start_point` (m) then.

@@ -11,74 +11,74 @@
 namespace talus {
 
 struct Motion {
-    std::vector<Vec2> position;            // [nb] m, centroid
-    std::vector<double> angle;             // [nb] rad, turned since the start
-    std::vector<Vec2> velocity;            // [nb] m/s
-    std::vector<double> spin;              // [nb] rad/s
+    std::vector<Vec2> position;  // [nb] m, centroid
+    std::vector<double> angle;   // [nb] rad, turned since the start
+    std::vector<Vec2> velocity;  // [nb] m/s
+    std::vector<double> spin;    // [nb] rad/s
 };
 
 struct Force {
-    Vec2 force = Vec2::Zero();             // N
-    double torque = 0.0;                   // N m, about the centroid
+    Vec2 force = Vec2::Zero();  // N
+    double torque = 0.0;        // N m, about the centroid
 };
 
 /// One contact between two convex parts. It exists while it carries force, is bonded, or has memory;
 /// see contact/contacts.hpp.
 struct Contact {
-    PartId part_a, part_b;                 // key: block of a < block of b; lists are sorted by (part_a, part_b)
+    PartId part_a, part_b;  // key: block of a < block of b; lists are sorted by (part_a, part_b)
     int joint;
-    int face = -1;                         // index into Model::faces, -1 = none
-    int edge_a = -1, edge_b = -1;          // edges (global corner index) that face each other, -1 = corner contact
-    std::uint8_t touching = 0;             // carries force now
-    std::uint8_t slipped = 0;              // has slipped: residual strength
-    std::uint8_t sliding = 0;              // slips in this step
-    std::uint8_t alive = 0;                // touching, or memory that is still kept; a contact that is not alive is forgotten
-    double length = 0.0;                   // m, over which it carries force
-    double overlap = 0.0;                  // m, mean over the length; < 0 open
-    double normal_force = 0.0;             // N, compression > 0
-    double shear_force = 0.0;              // N on b along perp(normal)
-    double shear_energy = 0.0;             // J, stored by the shear force: shear_force^2 / (2 ks x the length that is sheared)
-    double strength = 0.0;                 // N, shear force it could carry now
-    double slip = 0.0;                     // m, path slipped so far
-    double slip_sum = 0.0;                 // m, signed sum: sense of the slip
-    double dilation = 0.0;                 // m, how far slip has opened it
-    Vec2 point = Vec2::Zero();             // m, centre of pressure
-    Vec2 normal = Vec2::Zero();            // unit, from a to b
+    int face = -1;                 // index into Model::faces, -1 = none
+    int edge_a = -1, edge_b = -1;  // edges (global corner index) that face each other, -1 = corner contact
+    std::uint8_t touching = 0;     // carries force now
+    std::uint8_t slipped = 0;      // has slipped: residual strength
+    std::uint8_t sliding = 0;      // slips in this step
+    std::uint8_t alive = 0;        // touching, or memory that is still kept; a contact that is not alive is forgotten
+    double length = 0.0;           // m, over which it carries force
+    double overlap = 0.0;          // m, mean over the length; < 0 open
+    double normal_force = 0.0;     // N, compression > 0
+    double shear_force = 0.0;      // N on b along perp(normal)
+    double shear_energy = 0.0;     // J, stored by the shear force: shear_force^2 / (2 ks x the length that is sheared)
+    double strength = 0.0;         // N, shear force it could carry now
+    double slip = 0.0;             // m, path slipped so far
+    double slip_sum = 0.0;         // m, signed sum: sense of the slip
+    double dilation = 0.0;         // m, how far slip has opened it
+    Vec2 point = Vec2::Zero();     // m, centre of pressure
+    Vec2 normal = Vec2::Zero();    // unit, from a to b
 };
 
 struct Contacts {
-    std::vector<Contact> list;             // [n] sorted by key
-    std::vector<Force> on_a, on_b;         // [n] what each puts on its two blocks
-    std::vector<std::uint8_t> broken;      // [cells] bond cells: 0 intact, 1 broken by tension, 2 by shear
+    std::vector<Contact> list;         // [n] sorted by key
+    std::vector<Force> on_a, on_b;     // [n] what each puts on its two blocks
+    std::vector<std::uint8_t> broken;  // [cells] bond cells: 0 intact, 1 broken by tension, 2 by shear
 };
 
 /// Energies and work since the last reset, J. Work is that done on the blocks.
 struct Ledger {
-    double total0 = 0.0;                   // Energies::total() at the start of the ledger
-    double kinetic0 = 0.0;                 // at the start of the ledger (product form, see dynamics/energy.hpp)
+    double total0 = 0.0;    // Energies::total() at the start of the ledger
+    double kinetic0 = 0.0;  // at the start of the ledger (product form, see dynamics/energy.hpp)
     double gravity = 0.0, loads = 0.0, contact = 0.0, local_damping = 0.0, driven = 0.0;  // work done on free blocks
-    double friction = 0.0;                 // dissipated by slip, >= 0
-    double contact_damping = 0.0;          // dissipated by dashpots, >= 0
-    double released = 0.0;                 // elastic shear energy given up when contacts shrink or break, >= 0
+    double friction = 0.0;                                                                // dissipated by slip, >= 0
+    double contact_damping = 0.0;                                                         // dissipated by dashpots, >= 0
+    double released = 0.0;  // elastic shear energy given up when contacts shrink or break, >= 0
 };
 
 struct State {
-    double time = 0.0;                     // s, since the last reset
-    double stage_time = 0.0;               // s, since the stage began
-    int calm_checks = 0;                   // looks in a row at which the unbalanced ratio was below its limit
-    std::int64_t step = 0;                 // since the last reset
+    double time = 0.0;        // s, since the last reset
+    double stage_time = 0.0;  // s, since the stage began
+    int calm_checks = 0;      // looks in a row at which the unbalanced ratio was below its limit
+    std::int64_t step = 0;    // since the last reset
     std::int64_t total_steps = 0;
-    int stage = 0;                         // index into the list of stages; the last one is `run`
-    double stage_step = 0.0;               // s, chosen at the start of the stage
-    int step_halvings = 0;                 // dt = stage_step / 2^step_halvings
+    int stage = 0;            // index into the list of stages; the last one is `run`
+    double stage_step = 0.0;  // s, chosen at the start of the stage
+    int step_halvings = 0;    // dt = stage_step / 2^step_halvings
     Motion motion;
-    std::vector<Force> load;               // [nb] sum of all forces at `time`, also on held blocks
-    std::vector<Force> damping;            // [nb] share of local damping in it; empty = none
+    std::vector<Force> load;     // [nb] sum of all forces at `time`, also on held blocks
+    std::vector<Force> damping;  // [nb] share of local damping in it; empty = none
     Contacts contacts;
-    std::vector<std::uint8_t> removed;     // [nb] deleted by a stage
-    std::vector<Force> release;            // [nb] forces of deleted neighbours that fade away in this stage; empty = none
-    std::vector<Vec2> start_position;      // [nb] m, position and angle from which displacements count
-    std::vector<double> start_angle;       // [nb] rad
+    std::vector<std::uint8_t> removed;  // [nb] deleted by a stage
+    std::vector<Force> release;         // [nb] forces of deleted neighbours that fade away in this stage; empty = none
+    std::vector<Vec2> start_position;   // [nb] m, position and angle from which displacements count
+    std::vector<double> start_angle;    // [nb] rad
     Ledger ledger;
 };
 

@@ -22,8 +22,8 @@ namespace {
     [[maybe_unused]] const auto& [total0, kinetic0, gravity, loads, work, local_damping, driven, friction, contact_damping,
                                   released] = ledger;
     [[maybe_unused]] const auto& [part_a, part_b, joint, face, edge_a, edge_b, touching, slipped, sliding, alive, length,
-                                  overlap, normal_force, shear_force, shear_energy, strength, slip, slip_sum, dilation, point, normal] =
-        contact;
+                                  overlap, normal_force, shear_force, shear_energy, strength, slip, slip_sum, dilation,
+                                  point, normal] = contact;
 }
 
 template <class T>

@@ -73,11 +73,12 @@ Shape joint_keys(const std::string& title, const std::string& meaning, bool chan
     const auto must = change ? optional : required;
     const auto zero = change ? optional : fallback("0");
     const auto is = [&](const std::string& value) { return change ? optional : fallback(value); };
-    const Shape residual =
-        table(change ? "residual change" : "residual", "Strength after the first slip, or after the last bond cell broke; never above the peak. Tension is then none.",
-              {{"friction_angle_deg", number("deg", friction_range), change ? optional : derived("the peak value"),
-                "friction angle"},
-               {"cohesion", number("Pa", not_negative), zero, "cohesion"}});
+    const Shape residual = table(
+        change ? "residual change" : "residual",
+        "Strength after the first slip, or after the last bond cell broke; never above the peak. Tension is then none.",
+        {{"friction_angle_deg", number("deg", friction_range), change ? optional : derived("the peak value"),
+          "friction angle"},
+         {"cohesion", number("Pa", not_negative), zero, "cohesion"}});
     return table(title, meaning,
                  {{"normal_stiffness", number("Pa/m", positive), must, "stress per closure"},
                   {"shear_stiffness", number("Pa/m", positive), must, "stress per elastic shear displacement"},

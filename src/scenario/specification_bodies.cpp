@@ -53,11 +53,12 @@ Shape crack() {
 }
 
 Shape traces() {
-    return table("traces", "Mapped traces. Free tips may be extended so that they meet other traces and cut blocks.",
-                 {{"file", text(), required, "GeoJSON or CSV, relative to the scenario file"},
-                  {"extend", number("m", not_negative), fallback("0"), "added at the tips of traces that end at no other trace"},
-                  {"snap", number("m", not_negative), fallback("0"), "corners closer than this become one"},
-                  {"joint", text(), derived("as `contacts` says"), "joint on the traces"}});
+    return table(
+        "traces", "Mapped traces. Free tips may be extended so that they meet other traces and cut blocks.",
+        {{"file", text(), required, "GeoJSON or CSV, relative to the scenario file"},
+         {"extend", number("m", not_negative), fallback("0"), "added at the tips of traces that end at no other trace"},
+         {"snap", number("m", not_negative), fallback("0"), "corners closer than this become one"},
+         {"joint", text(), derived("as `contacts` says"), "joint on the traces"}});
 }
 
 Shape named_region() {

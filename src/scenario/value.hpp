@@ -48,7 +48,8 @@ struct Entry {
 std::optional<double> as_number(const std::string& text);
 std::optional<bool> as_boolean(const std::string& text);  // true, True, TRUE, false, False, FALSE
 
-/// Sorted keys (names in their order), numbers as %.17g, no white space: equal trees give equal texts. Raw scalars get the type YAML gives them.
+/// Sorted keys (names in their order), numbers as %.17g, no white space: equal trees give equal texts. Raw scalars get the
+/// type YAML gives them.
 std::string to_json(const Value& value);
 
 }  // namespace talus

@@ -17,9 +17,8 @@ State with_all_touching_faces(const Simulation& simulation) {
     State state = simulation.first_state();
     state.contacts.list.clear();
     for (const Neighbours::Touch& touch : find_neighbours(model, corner, tolerance).touches) {
-        Contact contact{.part_a = touch.part_a,
-                        .part_b = touch.part_b,
-                        .joint = model.joint_between(touch.part_a, touch.part_b)};
+        Contact contact{
+            .part_a = touch.part_a, .part_b = touch.part_b, .joint = model.joint_between(touch.part_a, touch.part_b)};
         contact.touching = contact.alive = 1;
         contact.length = touch.s1 - touch.s0;
         contact.normal = model.corners.normal[touch.edge_a];

@@ -142,7 +142,8 @@ void Recorder::after_step(const Simulation& simulation) {
     const double time = simulation.state().time;
     for (History& history : histories_)
         if (!history.every || due(time, history.rows, *history.every)) sample(simulation, history);
-    if (frame_every_ > 0.0 && time >= next_multiple(last_frame_time_, frame_every_) * (1.0 - slack)) frame_and_restart(simulation);
+    if (frame_every_ > 0.0 && time >= next_multiple(last_frame_time_, frame_every_) * (1.0 - slack))
+        frame_and_restart(simulation);
 }
 
 void Recorder::end_stage(const Simulation& simulation) {

@@ -23,12 +23,12 @@ public:
     /// Goes on after a restart point.
     Recorder(const std::string& path, const Simulation& simulation, const RestartInfo& info);
 
-    void begin_stage(const Simulation& simulation);     // a frame if the clock has just been set
-    void after_step(const Simulation& simulation);      // what is due by now
-    void end_stage(const Simulation& simulation);       // a frame of its end
+    void begin_stage(const Simulation& simulation);                      // a frame if the clock has just been set
+    void after_step(const Simulation& simulation);                       // what is due by now
+    void end_stage(const Simulation& simulation);                        // a frame of its end
     void write_frame(const Simulation& simulation, const State& state);  // now, due or not
     void save_restart(const Simulation& simulation);
-    void close(const std::string& status);              // without a restart file
+    void close(const std::string& status);  // without a restart file
     void finish(const Simulation& simulation, const std::string& status, double wall_time);
 
     std::int64_t frames() const { return writer_.frames(); }
@@ -49,8 +49,8 @@ private:
     RestartInfo info_;
     ResultsWriter writer_;
     std::vector<History> histories_;
-    double frame_every_ = 0.0;           // s; 0: only at the ends of stages
-    double last_frame_time_ = -1.0;      // s
+    double frame_every_ = 0.0;       // s; 0: only at the ends of stages
+    double last_frame_time_ = -1.0;  // s
     Stopwatch since_restart_;
     bool restart_written_ = false;
 };
@@ -65,11 +65,11 @@ enum class Entry {
 };
 
 struct RunOptions {
-    Recorder* recorder = nullptr;                              // none: nothing is written
-    Watch* watch = nullptr;                                    // none: expectations are not judged
-    std::function<void(const Simulation&)> stage_begun;        // after its step is chosen
-    std::function<void(const Simulation&)> progress;           // called every step; cheap
-    std::function<bool()> interrupted;                         // asked every step
+    Recorder* recorder = nullptr;                        // none: nothing is written
+    Watch* watch = nullptr;                              // none: expectations are not judged
+    std::function<void(const Simulation&)> stage_begun;  // after its step is chosen
+    std::function<void(const Simulation&)> progress;     // called every step; cheap
+    std::function<bool()> interrupted;                   // asked every step
     Entry entry = Entry::fresh;
 };
 

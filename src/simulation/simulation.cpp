@@ -78,16 +78,16 @@ void Simulation::step() {
     watch_.lap();
     load_before_ = state_.load;
     damping_before_ = state_.damping;
-    kick(model_, state_.load, state_.motion, dt / 2);                     // v(t) -> v(t + dt/2)
+    kick(model_, state_.load, state_.motion, dt / 2);  // v(t) -> v(t + dt/2)
     drive(model_, state_.stage_time + dt / 2, state_.motion);
-    drift(state_.motion, dt);                                             // x(t) -> x(t + dt)
+    drift(state_.motion, dt);  // x(t) -> x(t + dt)
     state_.time += dt;
     state_.stage_time += dt;
     lap(Part::move);
     update_forces(dt);
     speed_ = account(model_, {load_before_, damping_before_}, {state_.load, state_.damping}, state_, dt, state_.ledger);
     lap(Part::account);
-    kick(model_, state_.load, state_.motion, dt / 2);                     // v(t + dt/2) -> v(t + dt)
+    kick(model_, state_.load, state_.motion, dt / 2);  // v(t + dt/2) -> v(t + dt)
     drive(model_, state_.stage_time, state_.motion);
     ++state_.step;
     ++state_.total_steps;
@@ -97,7 +97,7 @@ void Simulation::step() {
     lap(Part::move);
 }
 
-void Simulation::update_forces(double dt) {                               // dt = 0 once at the start: no slip
+void Simulation::update_forces(double dt) {  // dt = 0 once at the start: no slip
     place(model_, state_.motion, boxed_position_.empty(), placed_);
     lap(Part::place);
     if (left_boxes()) refresh();
@@ -116,9 +116,9 @@ void Simulation::check_speed() const {
         const Vec2& v = state_.motion.velocity[b];
         if (std::isfinite(v.x()) && std::isfinite(v.y()) && std::isfinite(state_.motion.spin[b])) continue;
         const Vec2 at = model_.blocks.start[b] + model_.origin;
-        throw DivergenceError("block " + std::to_string(b) + ", at (" + std::to_string(at.x()) + ", " + std::to_string(at.y()) +
-                              ") at the start, has no finite velocity any more: t = " + std::to_string(state_.time) +
-                              " s, step " + std::to_string(state_.total_steps) +
+        throw DivergenceError("block " + std::to_string(b) + ", at (" + std::to_string(at.x()) + ", " +
+                              std::to_string(at.y()) + ") at the start, has no finite velocity any more: t = " +
+                              std::to_string(state_.time) + " s, step " + std::to_string(state_.total_steps) +
                               "; the step is too long for the stiffness, or loads grow without bound: leave "
                               "run.time_step out, or look at the last frame");
     }

@@ -38,21 +38,21 @@ public:
     const Scenario& scenario() const { return scenario_; }
     const Model& model() const { return model_; }
     const State& state() const { return state_; }
-    const State& first_state() const { return first_; }      // when the scene was built: where places are looked up
+    const State& first_state() const { return first_; }  // when the scene was built: where places are looked up
     const StageSpec& stage() const { return stages_[state_.stage]; }
     int stage_count() const { return static_cast<int>(stages_.size()); }
     const StableStep& stable() const { return stable_; }
     const BuildReport& report() const { return report_; }
     double skin() const { return skin_; }
-    double time_step() const;  // s, of the next step (before the cut at the end)
+    double time_step() const;                                          // s, of the next step (before the cut at the end)
     bool recorded() const { return state_.stage >= first_recorded_; }  // no later stage sets the clock back
-    double recorded_time() const;    // s, length of the recorded stages as far as it is given
+    double recorded_time() const;  // s, length of the recorded stages as far as it is given
     bool reached_equilibrium() const { return equilibrium_; }
     Energies energies() const;
     double energy_drift() const { return energies().total() - state_.ledger.total0; }  // J
-    std::int64_t steps_done() const { return steps_done_; }  // in this process
-    double ledger_error() const;                           // J
-    double max_speed() const { return speed_; }            // m/s, in the last step
+    std::int64_t steps_done() const { return steps_done_; }                            // in this process
+    double ledger_error() const;                                                       // J
+    double max_speed() const { return speed_; }                                        // m/s, in the last step
     std::int64_t refreshes() const { return refreshes_; }  // how often the list of pairs was made anew
     const std::array<double, part_names.size()>& seconds() const { return seconds_; }
 

@@ -19,7 +19,8 @@ struct TwoBlocks {
     Scene scene;
     Placed placed;
 
-    TwoBlocks(const Polygon& a, const Polygon& b) : scene(build(with({block("a", a), block("b", shifted(b, {100.0, 0.0}))}))) {
+    TwoBlocks(const Polygon& a, const Polygon& b)
+        : scene(build(with({block("a", a), block("b", shifted(b, {100.0, 0.0}))}))) {
         put(1, scene.state.motion.position[1] - Vec2(100.0, 0.0), 0.0);
     }
     void put(BlockId b, const Vec2& at, double angle) {
@@ -108,9 +109,11 @@ TEST_CASE("tilt under an eccentric load follows the Winkler joint, with and with
                 REQUIRE(patch.loaded);
                 const double force = sign * patch.fy;
                 const double torque = turned ? -patch.torque_a : patch.torque_b;  // on the block about its centroid
-                // The base turns about the centre of the block: its overlap at x is u_mean - tilt x, so the left side presses.
+                // The base turns about the centre of the block: its overlap at x is u_mean - tilt x, so the left side
+                // presses.
                 const double e = -torque / force;
-                const double expected = std::abs(e) <= 1.0 / 6.0 ? 12.0 * std::abs(e) : 2.0 / (9.0 * std::pow(0.5 - std::abs(e), 2));
+                const double expected =
+                    std::abs(e) <= 1.0 / 6.0 ? 12.0 * std::abs(e) : 2.0 / (9.0 * std::pow(0.5 - std::abs(e), 2));
                 CHECK(tilt / force == Approx(expected).epsilon(5e-4));
                 // A block that stands on a wide face feels no force along that face, however it is tilted.
                 CHECK(std::abs(patch.fx) < 2e-9 * force);
@@ -146,7 +149,8 @@ TEST_CASE("a shrinking contact loses shear force and gives up the energy; fricti
     const ShearResult shrunk = law(joint, {1e6, 0.5, 0.0, 0.0, 0.0, 0.0}, c);
     CHECK(c.shear_force == Approx(0.5e5));
     CHECK(shrunk.released == Approx(0.5 * 1e5 * 1e-4 - 0.5 * 0.5e5 * 1e-4));
-    const ShearResult slipped = law(joint, {1e4, 0.5, 0.0, 0.0, 0.0, 0.0}, c);  // the normal force falls: it slips on its own
+    const ShearResult slipped =
+        law(joint, {1e4, 0.5, 0.0, 0.0, 0.0, 0.0}, c);  // the normal force falls: it slips on its own
     CHECK(c.sliding == 1);
     CHECK(c.shear_force == Approx(1e4));
     CHECK(slipped.friction > 0.0);
