@@ -1,6 +1,7 @@
 #include "contact/distance_potential.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace talus {
 namespace {
@@ -12,21 +13,21 @@ struct Line {  // depth below edge k of P along an edge of Q: D + s t, t in [0, 
 // Adds -sign/2 x Int d_P ds x normal over all edges of Q inside P. Q is shifted by (qx, qy), P by (px, py), both from the
 // centroid of a; sign is +1 where Q is block b (force on b) and -1 where Q is block a (the reaction falls on b).
 void integrate(const PlacedPart& q, double qx, double qy, const PlacedPart& p, double px, double py, double sign, double dx,
-               double dy, Patch& patch, double& weight) {
+               double dy, Pressed& patch, double& weight) {
     constexpr int few = 16;  // parts with more edges than this are rare and may allocate
     Line some[few];
     std::vector<Line> many(p.n > few ? p.n : 0);
     Line* const lines = p.n > few ? many.data() : some;
     for (int e = 0; e < q.n; ++e) {
         if (q.internal[e]) continue;
-        const Vec2& from = q.arm[e];
-        const Vec2& to = q.arm[q.next(e)];
+        const Vec2& from = q.arm(e);
+        const Vec2& to = q.arm(q.next(e));
         const double ax = from.x() + (qx - px), ay = from.y() + (qy - py);
         const double ux = to.x() - from.x(), uy = to.y() - from.y();
         double lo = 0.0, hi = 1.0;
         for (int k = 0; k < p.n && lo < hi; ++k) {
-            const double depth = p.offset[k] - (p.normal[k].x() * ax + p.normal[k].y() * ay);
-            const double slope = -(p.normal[k].x() * ux + p.normal[k].y() * uy);
+            const double depth = p.offset[k] - (p.normal(k).x() * ax + p.normal(k).y() * ay);
+            const double slope = -(p.normal(k).x() * ux + p.normal(k).y() * uy);
             lines[k] = {depth, slope};
             const double end = depth + slope;
             if (depth > 0.0 && end > 0.0) continue;  // the usual case: edge k does not cut this edge
@@ -64,8 +65,8 @@ void integrate(const PlacedPart& q, double qx, double qy, const PlacedPart& p, d
                 const double integral = 0.5 * q.length[e] * (end - t) * (f1 + f2);
                 const double at = t + (end - t) * (f1 + 2.0 * f2) / (3.0 * (f1 + f2));
                 const double x = from.x() + qx + at * ux, y = from.y() + qy + at * uy;
-                const double fx = -0.5 * sign * integral * q.normal[e].x();
-                const double fy = -0.5 * sign * integral * q.normal[e].y();
+                const double fx = -0.5 * sign * integral * q.normal(e).x();
+                const double fy = -0.5 * sign * integral * q.normal(e).y();
                 patch.fx += fx;
                 patch.fy += fy;
                 patch.torque_a += x * fy - y * fx;
@@ -110,39 +111,40 @@ double depth_integral(const Polygon& polygon, double nx, double ny, double offse
 double potential(const Polygon& region, const PlacedPart& p, double px, double py) {
     double sum = 0.0;
     for (int k = 0; k < p.n; ++k) {
-        const double offset_k = p.offset[k] + p.normal[k].x() * px + p.normal[k].y() * py;
+        const double offset_k = p.offset[k] + p.normal(k).x() * px + p.normal(k).y() * py;
         Polygon cell = region;
         for (int j = 0; j < p.n && cell.size() > 2; ++j) {
             if (j == k) continue;
-            const double offset_j = p.offset[j] + p.normal[j].x() * px + p.normal[j].y() * py;
+            const double offset_j = p.offset[j] + p.normal(j).x() * px + p.normal(j).y() * py;
             // offset_k - n_k.x <= offset_j - n_j.x
-            cell = clip(cell, p.normal[j].x() - p.normal[k].x(), p.normal[j].y() - p.normal[k].y(), offset_j - offset_k);
+            cell = clip(cell, p.normal(j).x() - p.normal(k).x(), p.normal(j).y() - p.normal(k).y(), offset_j - offset_k);
         }
-        if (cell.size() > 2) sum += depth_integral(cell, p.normal[k].x(), p.normal[k].y(), offset_k);
+        if (cell.size() > 2) sum += depth_integral(cell, p.normal(k).x(), p.normal(k).y(), offset_k);
     }
     return sum;
 }
 
 }  // namespace
 
-Patch distance_potential(const PlacedPart& a, const PlacedPart& b, double dx, double dy) {
-    Patch patch;
+Pressed distance_potential(const PlacedPart& a, const PlacedPart& b, double dx, double dy) {
+    Pressed patch;
     double weight = 0.0;
     integrate(b, dx, dy, a, 0.0, 0.0, 1.0, dx, dy, patch, weight);
     integrate(a, 0.0, 0.0, b, dx, dy, -1.0, dx, dy, patch, weight);
-    if (weight > 0.0 && patch.length > 0.0) {
-        patch.loaded = true;
-        patch.x /= weight;
-        patch.y /= weight;
-        patch.overlap = weight / (2.0 * patch.length);
-    }
+    patch.along_normal = std::sqrt(patch.fx * patch.fx + patch.fy * patch.fy);
+    if (!(weight > 0.0 && patch.along_normal > 0.0)) return {};
+    patch.nx = patch.fx / patch.along_normal;
+    patch.ny = patch.fy / patch.along_normal;
+    patch.x /= weight;
+    patch.y /= weight;
+    patch.overlap = weight / (2.0 * patch.length);
     return patch;
 }
 
 double distance_potential_energy(const PlacedPart& a, const PlacedPart& b, double dx, double dy) {
-    Polygon region(b.arm, b.arm + b.n);
-    for (Vec2& corner : region) corner += Vec2(dx, dy);
-    for (int k = 0; k < a.n && region.size() > 2; ++k) region = clip(region, a.normal[k].x(), a.normal[k].y(), a.offset[k]);
+    Polygon region;
+    for (int k = 0; k < b.n; ++k) region.push_back(b.arm(k) + Vec2(dx, dy));
+    for (int k = 0; k < a.n && region.size() > 2; ++k) region = clip(region, a.normal(k).x(), a.normal(k).y(), a.offset[k]);
     if (region.size() < 3) return 0.0;
     return 0.5 * (potential(region, a, 0.0, 0.0) + potential(region, b, dx, dy));
 }

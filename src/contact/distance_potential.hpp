@@ -2,6 +2,7 @@
 #pragma once
 
 #include "contact/placed_part.hpp"
+#include "contact/pressed.hpp"
 
 namespace talus {
 
@@ -13,8 +14,9 @@ namespace talus {
 /// A true potential without corner cases; a face with overlap u gets kn u per metre and its exact moment. Edges between two
 /// parts of one block bound the depth of each part, so that no depth is ever measured to a boundary far away; as edges under
 /// pressure they are left out, because what they would carry on both their sides cancels exactly.
-/// The form is Munjiza's (2004) with the distance potential of Liu et al. (2017).
-Patch distance_potential(const PlacedPart& a, const PlacedPart& b, double dx, double dy);
+/// Not loaded (length 0) if the parts do not overlap. The form is Munjiza's (2004) with the distance potential of Liu et al.
+/// (2017).
+Pressed distance_potential(const PlacedPart& a, const PlacedPart& b, double dx, double dy);
 
 /// E / kn of the same, m3. For the energy report only: exact, and slower.
 double distance_potential_energy(const PlacedPart& a, const PlacedPart& b, double dx, double dy);

@@ -1,31 +1,29 @@
 // The closed form for two faces that lie on each other: most contacts of a rock mass, at a fraction of the general cost.
 #pragma once
 
+#include "contact/face_window.hpp"
 #include "contact/placed_part.hpp"
 
 #include <cstdint>
-#include <optional>
 
 namespace talus {
 
-/// What a joint face brings along besides geometry: stress it was built with, and bond cells that can pull.
-/// Positions s are measured along edge_a from its first corner.
+/// What a joint face brings along besides geometry: the stress it was built with, and bond cells that can pull.
 struct FaceMemory {
-    double s0, s1;               // m, the stretch that touched when built
-    double closure0, closure1;   // m, initial normal stress / kn at s0 and s1
+    InitialClosure initial;
     const std::uint8_t* broken;  // [cells] 0 = intact; null: no bonds
     int cells;
 };
 
 enum class FaceState { invalid, open, loaded };
 
-struct FacePatch : Patch {
+struct FaceContact {
     FaceState state = FaceState::invalid;
-    double nx = 0.0, ny = 0.0;        // common normal, from a to b
-    double rotation_stiffness = 0.0;  // m3: Int (s - centre)^2 ds over the loaded length, for the dashpot
-    double mean_closure = 0.0;        // m, over the window: geometric overlap, < 0 open
-    double largest_pull = 0.0;        // m, over the intact cells: tension / kn at the end where it is largest
+    Pressed pressed;
+    double largest_pull = 0.0;  // m, over the intact cells: tension / kn at the end where it is largest
 };
+
+FaceLines face_lines(const PlacedPart& a, const PlacedPart& b, double dx, double dy, int ea, int eb);
 
 /// Contact along edge ea of A and edge eb of B. `invalid` when the edges are more than 5 degrees from anti-parallel or when
 /// the window in which they face each other is not long against the overlap: then corners matter and the general law must
@@ -34,8 +32,8 @@ struct FacePatch : Patch {
 /// bisector of the two faces plus, at each end of the window, the thrust (kn/4) u^2 of the side edge whose corner lies
 /// there: without it a block tilted by theta would feel a false tangential force N theta / 2. Differs from the general
 /// distance potential by O(u / length) in stiffness, and by higher order in direction.
-FacePatch face_contact(const PlacedPart& a, const PlacedPart& b, double dx, double dy, int ea, int eb,
-                       const FaceMemory* memory);
+FaceContact face_contact(const PlacedPart& a, const PlacedPart& b, double dx, double dy, int ea, int eb,
+                         const FaceMemory* memory);
 
 /// E / kn of a loaded face, m3.
 double face_energy(const PlacedPart& a, const PlacedPart& b, double dx, double dy, int ea, int eb, const FaceMemory* memory);

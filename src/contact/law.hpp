@@ -1,8 +1,8 @@
-// The law of a joint: Mohr-Coulomb with peak and residual strength, on the resultants of one contact.
+// The law of a joint: Mohr-Coulomb with peak and residual strength, on the resultants of one contact. Written without
+// branches, so that the compiler can make one or many contacts of it.
 #pragma once
 
 #include "model/model.hpp"
-#include "model/state.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -18,76 +18,91 @@ struct ShearStep {
     double dashpot;        // N, viscous shear force, counted only while the contact sticks
 };
 
+/// What a contact knows about its shear; the members of the same names in Contact.
+struct ShearMemory {
+    double force = 0.0, energy = 0.0, slip = 0.0, slip_sum = 0.0, dilation = 0.0;
+    double slipped = 0.0;  // 1 = has slipped
+};
+
 struct ShearResult {
-    double dashpot = 0.0;     // N, part of it that acts
-    double friction = 0.0;    // J, dissipated by slip
-    double released = 0.0;    // J, elastic energy given up because the contact shrank
+    double strength = 0.0;  // N, the shear force it could carry
+    double dashpot = 0.0;   // N, part of it that acts
+    double friction = 0.0;  // J, dissipated by slip
+    double released = 0.0;  // J, elastic energy given up because the contact shrank
+    bool sliding = false;
     bool bonds_fail = false;  // first slip of a joint that weakens: its bonds are gone
 };
+
+/// max(x, 0), exact; as a sum because a comparison that others hang on keeps compilers from making vectors.
+[[gnu::always_inline]] inline double positive_part(double x) { return 0.5 * (x + std::abs(x)); }
+
+[[gnu::always_inline]] inline double shear_strength(const JointLaw& joint, double normal_force, double length,
+                                                    double bonded_length, double face_length, double tan_friction) {
+    const double rest = positive_part(std::min(length, face_length) - bonded_length);
+    const double cohesion = joint.cohesion * bonded_length + (joint.weakens ? joint.cohesion_residual * rest : 0.0);
+    return positive_part(cohesion + normal_force * tan_friction);
+}
 
 /// |T| <= c L_bonded + N tan(phi); elastic below with ks x length. A contact that shrinks takes the shear stress of the part
 /// that is lost with it, otherwise friction would make energy; a part that is new carries none. What counts is the length
 /// that is sheared, T^2 / (2 ks E) with the stored energy E (at most the contact length, by Cauchy-Schwarz): only when the
 /// contact becomes shorter than that does T fall. A length that trembles therefore costs nothing, where T x length/old
-/// length would bleed shear force at every tremor. Friction work is taken with the mean shear force of the step, so that
+/// length would bleed shear force at every tremor.
+///
+/// Slip on a dilating joint lifts it by tan(psi) per metre (lowers it on the way back), which presses it with kn x length in
+/// the same step: the slip is taken against ks and this stiffness together. Taken against ks alone, the normal force lags
+/// behind by one step and slip back is unstable. Friction work is taken with the mean shear force of the step, so that
 /// shear work = stored + dissipated + released exactly.
-struct MohrCoulomb {
-    ShearResult operator()(const Joint& joint, const ShearStep& step, Contact& c) const {
-        ShearResult result;
-        const double stiffness = joint.ks * step.length;
-        double before = c.shear_force, energy = c.shear_energy;
-        const double twice_energy_all = before * before / stiffness;  // if the whole length were sheared evenly
-        if (twice_energy_all > 2.0 * energy) {                        // the sheared length no longer fits
-            const double share = 2.0 * energy / twice_energy_all;
-            before *= share;
-            result.released = energy * (1.0 - share);
-            energy *= share;
-            // What is lost worked through half of this step before it went (mean of both its ends).
-            result.friction = -0.5 * (c.shear_force - before) * step.displacement;
-        }
-        const double trial = before - stiffness * step.displacement;
-        double strength = this->strength(joint, step, c.slipped);
-        c.sliding = std::abs(trial) > strength;
-        if (c.sliding) {
-            if (!c.slipped && joint.weakens) {
-                result.bonds_fail = step.bonded_length > 0.0;
-                ShearStep weak = step;
-                weak.bonded_length = 0.0;
-                strength = std::min(strength, this->strength(joint, weak, true));
-            }
-            c.slipped = 1;
-            const double sign = trial > 0.0 ? 1.0 : -1.0;
-            const double force = sign * strength;
-            const double slip = (std::abs(trial) - strength) / stiffness;
-            c.slip += slip;
-            c.slip_sum -= sign * slip;
-            // Slip evens the stress out: a contact that slides is sheared over its whole length.
-            const double stored = 0.5 * strength * strength / stiffness;
-            const double dilation = joint.tan_dilation * std::min(std::abs(c.slip_sum), joint.dilation_cutoff_slip);
-            result.friction += energy - stored - 0.5 * (before + force) * step.displacement;
-            result.friction -= step.normal_force * (dilation - c.dilation);  // what lifts the block is not lost
-            c.dilation = dilation;
-            c.shear_force = force;
-            c.shear_energy = stored;
-        } else {
-            if (std::abs(trial + step.dashpot) <= strength) result.dashpot = step.dashpot;
-            c.shear_force = trial;
-            c.shear_energy = std::max(energy - 0.5 * (before + trial) * step.displacement, 0.5 * trial * trial / stiffness);
-        }
-        c.strength = strength;
-        c.length = step.length;
-        return result;
-    }
+[[gnu::always_inline]] inline ShearResult mohr_coulomb(const JointLaw& joint, const ShearStep& step, ShearMemory& c) {
+    ShearResult result;
+    const double stiffness = joint.ks * step.length;
+    const double energy_if_even = 0.5 * c.force * c.force / stiffness;  // sheared over the whole length
+    const double share = energy_if_even > c.energy ? c.energy / energy_if_even : 1.0;
+    const double before = c.force * share, energy = c.energy * share;
+    result.released = c.energy * (1.0 - share);
+    // What is lost worked through half of this step before it went (mean of both its ends).
+    const double lost_work = -0.5 * (c.force - before) * step.displacement;
 
-    static double strength(const Joint& joint, const ShearStep& step, bool slipped) {
-        const bool weak = slipped && joint.weakens;
-        double cohesion = joint.cohesion * step.bonded_length;
-        if (joint.weakens)
-            cohesion +=
-                joint.cohesion_residual * std::max(std::min(step.length, step.face_length) - step.bonded_length, 0.0);
-        const double friction = weak ? joint.tan_friction_residual : joint.tan_friction;
-        return std::max(cohesion + step.normal_force * friction, 0.0);
-    }
-};
+    const double trial = before - stiffness * step.displacement, size = std::abs(trial);
+    const double residual_friction = joint.tan_friction_residual;
+    const bool slipped = c.slipped != 0.0;
+    const double friction = slipped & joint.weakens ? residual_friction : joint.tan_friction;
+    const double peak =
+        shear_strength(joint, step.normal_force, step.length, step.bonded_length, step.face_length, friction);
+    result.sliding = size > peak;
+    const bool weakens_now = result.sliding & !slipped & joint.weakens;
+    const double residual = shear_strength(joint, step.normal_force, step.length, 0.0, step.face_length, residual_friction);
+    result.strength = weakens_now ? std::min(peak, residual) : peak;
+    result.bonds_fail = weakens_now & (step.bonded_length > 0.0);
+
+    // If it slides:
+    const double sign = trial > 0.0 ? 1.0 : -1.0;
+    const double opening = std::abs(c.slip_sum) < joint.dilation_cutoff_slip ? joint.tan_dilation : 0.0;
+    const double per_slip = sign * c.slip_sum > 0.0 ? -opening : opening;  // dilation grows away from the start only
+    const double stiffening = (weakens_now ? residual_friction : friction) * joint.kn * step.length * per_slip;
+    const double slip = (size - result.strength) / std::max(stiffness + stiffening, 0.1 * stiffness);
+    const double slid_force = sign * positive_part(result.strength + stiffening * slip);
+    const double slip_sum = c.slip_sum - sign * slip;
+    const double dilation = joint.tan_dilation * std::min(std::abs(slip_sum), joint.dilation_cutoff_slip);
+    const double lift = dilation - c.dilation;
+    // Slip evens the stress out: a contact that slides is sheared over its whole length. What lifts the block is not lost.
+    const double slid_energy = 0.5 * slid_force * slid_force / stiffness;
+    const double slid_work = energy - slid_energy - 0.5 * (before + slid_force) * step.displacement -
+                             lift * (step.normal_force + 0.5 * joint.kn * step.length * lift);
+    // If it sticks:
+    const double held_energy =
+        std::max(energy - 0.5 * (before + trial) * step.displacement, 0.5 * trial * trial / stiffness);
+    const double held_dashpot = std::abs(trial + step.dashpot) <= result.strength ? step.dashpot : 0.0;
+
+    result.friction = lost_work + (result.sliding ? slid_work : 0.0);
+    result.dashpot = result.sliding ? 0.0 : held_dashpot;
+    c.force = result.sliding ? slid_force : trial;
+    c.energy = result.sliding ? slid_energy : held_energy;
+    c.slip += result.sliding ? slip : 0.0;
+    c.slip_sum = result.sliding ? slip_sum : c.slip_sum;
+    c.dilation = result.sliding ? dilation : c.dilation;
+    c.slipped = result.sliding ? 1.0 : c.slipped;
+    return result;
+}
 
 }  // namespace talus

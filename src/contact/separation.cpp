@@ -19,7 +19,7 @@ int facing_edge(const PlacedPart& other, double nx, double ny) {
     int best = 0;
     double least = 2.0;
     for (int k = 0; k < other.n; ++k) {
-        const double cosine = other.normal[k].x() * nx + other.normal[k].y() * ny;
+        const double cosine = other.normal(k).x() * nx + other.normal(k).y() * ny;
         if (cosine < least) least = cosine, best = k;
     }
     return best;

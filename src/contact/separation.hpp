@@ -10,9 +10,9 @@ namespace talus {
 /// m, distance of the nearest corner of `other` (shifted by (dx, dy) against `shape`) from the line of edge k of `shape`;
 /// >= 0: the edge separates the two.
 inline double separation_by_edge(const PlacedPart& shape, int k, const PlacedPart& other, double dx, double dy) {
-    const double nx = shape.normal[k].x(), ny = shape.normal[k].y();
-    double nearest = nx * other.arm[0].x() + ny * other.arm[0].y();
-    for (int i = 1; i < other.n; ++i) nearest = std::min(nearest, nx * other.arm[i].x() + ny * other.arm[i].y());
+    const double nx = shape.normal(k).x(), ny = shape.normal(k).y();
+    double nearest = nx * other.arm(0).x() + ny * other.arm(0).y();
+    for (int i = 1; i < other.n; ++i) nearest = std::min(nearest, nx * other.arm(i).x() + ny * other.arm(i).y());
     return nearest + (nx * dx + ny * dy) - shape.offset[k];
 }
 

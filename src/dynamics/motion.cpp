@@ -60,18 +60,19 @@ void drive(const Model& model, double t, Motion& motion) {
 
 void place(const Model& model, const Motion& motion, bool all, Placed& placed) {
     const int nb = model.blocks.size();
-    placed.arm.resize(model.corners.arm.size());
-    placed.normal.resize(model.corners.arm.size());
+    placed.corner.resize(model.corners.arm.size());
+    placed.block.resize(nb);
 #pragma omp parallel for schedule(static)
     for (int b = 0; b < nb; ++b) {
+        placed.block[b] = {motion.position[b], motion.velocity[b], motion.spin[b]};
         if (!all && model.blocks.inv_inertia[b] == 0.0 && motion.spin[b] == 0.0) continue;
         const double c = std::cos(motion.angle[b]), s = std::sin(motion.angle[b]);
         const int begin = model.parts.first_corner[model.blocks.first_part[b]];
         const int end = model.parts.first_corner[model.blocks.first_part[b + 1]];
         for (int k = begin; k < end; ++k) {
             const Vec2 &p = model.corners.arm[k], &n = model.corners.normal[k];
-            placed.arm[k] = {c * p.x() - s * p.y(), s * p.x() + c * p.y()};
-            placed.normal[k] = {c * n.x() - s * n.y(), s * n.x() + c * n.y()};
+            placed.corner[k] = {{c * p.x() - s * p.y(), s * p.x() + c * p.y()},
+                                {c * n.x() - s * n.y(), s * n.x() + c * n.y()}};
         }
     }
 }

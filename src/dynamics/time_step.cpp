@@ -141,12 +141,12 @@ StableStep stable_step(const Model& model, const Placed& placed, const State& st
             const int begin = model.parts.first_corner[p], end = model.parts.first_corner[p + 1];
             for (int k = begin; k < end; ++k) {
                 if (model.corners.internal[k]) continue;
-                const Vec2 middle = 0.5 * (placed.arm[k] + placed.arm[k + 1 == end ? begin : k + 1]);
-                add_face(whole, middle, placed.normal[k], model.corners.length[k], most.kn[b], most.ks[b]);
+                const Vec2 middle = 0.5 * (placed.corner[k].arm + placed.corner[k + 1 == end ? begin : k + 1].arm);
+                add_face(whole, middle, placed.corner[k].normal, model.corners.length[k], most.kn[b], most.ks[b]);
                 if (model.corners.length[k] <= length) continue;
                 length = model.corners.length[k];
                 longest.setZero();
-                add_face(longest, middle, placed.normal[k], length, most.kn[b], most.ks[b]);
+                add_face(longest, middle, placed.corner[k].normal, length, most.kn[b], most.ks[b]);
             }
         }
         const double here = 2.0 * largest_eigenvalue(whole, free);

@@ -209,8 +209,7 @@ void Builder::set_state() {
     state.start_position = state.motion.position;
     state.start_angle = state.motion.angle;
     state.contacts.list = first_contacts(model_);
-    state.contacts.on_a.assign(state.contacts.list.size(), {});
-    state.contacts.on_b.assign(state.contacts.list.size(), {});
+    state.contacts.reaction.assign(state.contacts.list.size(), {});
     state.contacts.broken.assign(model_.cells(), 0);
 }
 

@@ -27,9 +27,10 @@ double out_of_balance(const Blocks& blocks, BlockId b, const Force& load) {
 // N per block: sum of the magnitudes of the contact forces.
 std::vector<double> contact_forces(const Model& model, const Contacts& contacts) {
     std::vector<double> sum(model.blocks.size(), 0.0);
-    for (std::size_t i = 0; i < contacts.on_a.size(); ++i) {
-        sum[model.parts.block[contacts.list[i].part_a]] += contacts.on_a[i].force.norm();
-        sum[model.parts.block[contacts.list[i].part_b]] += contacts.on_b[i].force.norm();
+    for (std::size_t i = 0; i < contacts.reaction.size(); ++i) {
+        const double size = contacts.reaction[i].force.norm();
+        sum[model.parts.block[contacts.list[i].part_a]] += size;
+        sum[model.parts.block[contacts.list[i].part_b]] += size;
     }
     return sum;
 }

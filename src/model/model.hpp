@@ -45,14 +45,17 @@ struct Corners {                 // edge k of a part runs from corner k to the n
 };
 
 /// Properties of a joint, ready for the law. Stiffness in Pa/m, strength in Pa, angles as tangents.
-struct Joint {
+struct JointLaw {
     double kn = 0.0, ks = 0.0;
     double tan_friction = 0.0, cohesion = 0.0, tension = 0.0;
     double tan_friction_residual = 0.0, cohesion_residual = 0.0;
     double tan_dilation = 0.0;
     double dilation_cutoff_slip = std::numeric_limits<double>::infinity();  // m
     bool weakens = false;  // strength drops to its residual value at the first slip
-    int cells = 2;         // bond cells per face
+};
+
+struct Joint : JointLaw {
+    int cells = 2;  // bond cells per face
     std::string name;
 };
 

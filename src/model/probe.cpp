@@ -97,14 +97,10 @@ Reading of_joint(const ProbeSpec& spec, const Model& model, const State& state) 
 
 Force contact_forces_on(const Model& model, const State& state, BlockId block) {
     Force sum;
-    const auto add = [&](PartId part, const Force& f) {
-        if (model.parts.block[part] != block) return;
-        sum.force += f.force;
-        sum.torque += f.torque;
-    };
     for (std::size_t i = 0; i < state.contacts.list.size(); ++i) {
-        add(state.contacts.list[i].part_a, state.contacts.on_a[i]);
-        add(state.contacts.list[i].part_b, state.contacts.on_b[i]);
+        const Reaction& r = state.contacts.reaction[i];
+        if (model.parts.block[state.contacts.list[i].part_a] == block) sum.force -= r.force, sum.torque += r.torque_a;
+        if (model.parts.block[state.contacts.list[i].part_b] == block) sum.force += r.force, sum.torque += r.torque_b;
     }
     return sum;
 }

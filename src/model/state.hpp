@@ -46,9 +46,16 @@ struct Contact {
     Vec2 normal = Vec2::Zero();    // unit, from a to b
 };
 
+/// What a contact puts on its two blocks.
+struct Reaction {
+    Vec2 force = Vec2::Zero();  // N, on b; a gets the opposite
+    double torque_a = 0.0;      // N m, on a about its centroid
+    double torque_b = 0.0;      // N m, on b about its centroid
+};
+
 struct Contacts {
     std::vector<Contact> list;         // [n] sorted by key
-    std::vector<Force> on_a, on_b;     // [n] what each puts on its two blocks
+    std::vector<Reaction> reaction;    // [n]
     std::vector<std::uint8_t> broken;  // [cells] bond cells: 0 intact, 1 broken by tension, 2 by shear
 };
 

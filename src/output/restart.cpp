@@ -18,7 +18,7 @@ namespace {
     [[maybe_unused]] const auto& [time, stage_time, calm, step, total_steps, stage, stage_step, halvings, motion, load,
                                   damping, contacts, removed, release, start_position, start_angle, ledger] = state;
     [[maybe_unused]] const auto& [position, angle, velocity, spin] = motion;
-    [[maybe_unused]] const auto& [list, on_a, on_b, broken] = contacts;
+    [[maybe_unused]] const auto& [list, reaction, broken] = contacts;
     [[maybe_unused]] const auto& [total0, kinetic0, gravity, loads, work, local_damping, driven, friction, contact_damping,
                                   released] = ledger;
     [[maybe_unused]] const auto& [part_a, part_b, joint, face, edge_a, edge_b, touching, slipped, sliding, alive, length,
@@ -54,6 +54,16 @@ struct Rows<Force> {
         flat.insert(flat.end(), {f.force.x(), f.force.y(), f.torque});
     }
     static void get(Force& f, const double* row) { f = {{row[0], row[1]}, row[2]}; }
+};
+
+template <>
+struct Rows<Reaction> {
+    using Number = double;
+    static constexpr int width = 4;
+    static void put(const Reaction& r, std::vector<double>& flat) {
+        flat.insert(flat.end(), {r.force.x(), r.force.y(), r.torque_a, r.torque_b});
+    }
+    static void get(Reaction& r, const double* row) { r = {{row[0], row[1]}, row[2], row[3]}; }
 };
 
 class Writing {
@@ -164,8 +174,7 @@ void transfer(Archive& to, AnyState& state) {
     to.list("load", "N, N m", state.load);
     to.list("damping", "N, N m", state.damping);
     transfer_contacts(to, state.contacts.list);
-    to.list("contacts/on_a", "N, N m", state.contacts.on_a);
-    to.list("contacts/on_b", "N, N m", state.contacts.on_b);
+    to.list("contacts/reaction", "N, N m", state.contacts.reaction);
     to.list("contacts/broken", "1", state.contacts.broken);
     to.list("removed", "1", state.removed);
     to.list("release", "N, N m", state.release);
@@ -186,12 +195,11 @@ void transfer(Archive& to, AnyState& state) {
 State with_contacts_alive(const State& state) {
     State kept = state;
     Contacts& contacts = kept.contacts;
-    contacts.list.clear(), contacts.on_a.clear(), contacts.on_b.clear();
+    contacts.list.clear(), contacts.reaction.clear();
     for (std::size_t i = 0; i < state.contacts.list.size(); ++i) {
         if (!state.contacts.list[i].alive) continue;
         contacts.list.push_back(state.contacts.list[i]);
-        contacts.on_a.push_back(state.contacts.on_a[i]);
-        contacts.on_b.push_back(state.contacts.on_b[i]);
+        contacts.reaction.push_back(state.contacts.reaction[i]);
     }
     return kept;
 }
@@ -234,7 +242,7 @@ bool fits(const State& s, const Model& model) {
     return one_per_block(s.motion.position, s.motion.angle, s.motion.velocity, s.motion.spin, s.load, s.removed,
                          s.start_position, s.start_angle) &&
            (s.release.empty() || s.release.size() == blocks) && (s.damping.empty() || s.damping.size() == blocks) &&
-           s.contacts.on_a.size() == contacts && s.contacts.on_b.size() == contacts &&
+           s.contacts.reaction.size() == contacts &&
            s.contacts.broken.size() == static_cast<std::size_t>(model.cells()) &&
            std::all_of(s.contacts.list.begin(), s.contacts.list.end(), known);
 }

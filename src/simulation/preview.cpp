@@ -25,8 +25,7 @@ State with_all_touching_faces(const Simulation& simulation) {
         contact.point = corner[touch.edge_a] + 0.5 * (touch.s0 + touch.s1) * perp(contact.normal);
         state.contacts.list.push_back(contact);
     }
-    state.contacts.on_a.resize(state.contacts.list.size());
-    state.contacts.on_b.resize(state.contacts.list.size());
+    state.contacts.reaction.resize(state.contacts.list.size());
     return state;
 }
 

@@ -102,10 +102,10 @@ void Simulation::update_forces(double dt) {  // dt = 0 once at the start: no sli
     lap(Part::place);
     if (left_boxes()) refresh();
     lap(Part::search);
-    update_contacts(model_, placed_, dt, state_, incidence_);
+    update_contacts(model_, placed_, dt, state_, contact_index_);
     lap(Part::contacts);
     external_forces(model_, state_, state_.load);
-    sum_contacts(model_, state_.contacts, incidence_, state_.load);
+    sum_contacts(model_, state_.contacts, contact_index_, state_.load);
     if (model_.local_damping > 0.0) damp_locally(model_, state_.motion, state_.load, state_.damping);
     lap(Part::sum);
 }
@@ -160,17 +160,17 @@ void Simulation::refresh() {
         Box box{1.0, 1.0, -1.0, -1.0};  // absent
         if (!state_.removed[block]) {
             const Vec2& at = state_.motion.position[block];
-            Vec2 low = placed_.arm[model_.parts.first_corner[p]], high = low;
+            Vec2 low = placed_.corner[model_.parts.first_corner[p]].arm, high = low;
             for (int k = model_.parts.first_corner[p] + 1; k < model_.parts.first_corner[p + 1]; ++k) {
-                low = low.cwiseMin(placed_.arm[k]);
-                high = high.cwiseMax(placed_.arm[k]);
+                low = low.cwiseMin(placed_.corner[k].arm);
+                high = high.cwiseMax(placed_.corner[k].arm);
             }
             box = Box{low.x() + at.x(), low.y() + at.y(), high.x() + at.x(), high.y() + at.y()}.grown(skin_);
         }
         boxes_[p] = box;
     }
     search_->find(boxes_, pairs_);
-    refresh_contacts(model_, pairs_, state_, incidence_);
+    refresh_contacts(model_, placed_, pairs_, skin_, state_, contact_index_);
     boxed_position_ = state_.motion.position;
     boxed_angle_ = state_.motion.angle;
     ++refreshes_;
@@ -228,9 +228,9 @@ void Simulation::delete_blocks() {
         const BlockId a = model_.parts.block[c.part_a], b = model_.parts.block[c.part_b];
         if (!c.touching || state_.removed[a] == state_.removed[b]) continue;
         const BlockId stays = state_.removed[a] ? b : a;
-        const Force& f = state_.removed[a] ? state_.contacts.on_b[i] : state_.contacts.on_a[i];
-        state_.release[stays].force += f.force;
-        state_.release[stays].torque += f.torque;
+        const Reaction& r = state_.contacts.reaction[i];
+        state_.release[stays].force += stays == b ? r.force : Vec2(-r.force);
+        state_.release[stays].torque += stays == b ? r.torque_b : r.torque_a;
     }
     for (BlockId b : gone) {
         state_.motion.velocity[b].setZero();

@@ -80,7 +80,7 @@ private:
     Placed placed_;  // Scratch from here on
     std::unique_ptr<PairSearch> search_;
     std::vector<Pair> pairs_;
-    Incidence incidence_;
+    ContactIndex contact_index_;
     std::vector<Box> boxes_;
     std::vector<Vec2> boxed_position_;  // [nb] where blocks were when the boxes were made; empty = no list yet
     std::vector<double> boxed_angle_;

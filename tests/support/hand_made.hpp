@@ -124,7 +124,7 @@ inline State random_state(const Model& m, std::uint64_t seed, int contacts) {
         c.strength = number(), c.shear_energy = number(), c.slip = number(), c.slip_sum = number(), c.dilation = number(),
         c.point = vector(), c.normal = vector();
         s.contacts.list.push_back(c);
-        s.contacts.on_a.push_back(force()), s.contacts.on_b.push_back(force());
+        s.contacts.reaction.push_back({vector(), number(), number()});
     }
     for (auto& cell : s.contacts.broken) cell = static_cast<std::uint8_t>(below(3));
     Ledger& l = s.ledger;

@@ -45,7 +45,7 @@ inline State state_of_frame(const Model& model, std::int64_t k) {
         c.length = 0.5, c.normal_force = number(k, i);
         state.contacts.list.push_back(c);
     }
-    state.contacts.on_a.resize(state.contacts.list.size()), state.contacts.on_b.resize(state.contacts.list.size());
+    state.contacts.reaction.resize(state.contacts.list.size());
     return state;
 }
 

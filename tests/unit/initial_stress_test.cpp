@@ -181,12 +181,12 @@ TEST_CASE("contact geometry and joint law find a rock under its in-situ stress a
         for (PartId a = 0; a < m.parts.size(); ++a)
             for (PartId b = a + 1; b < m.parts.size(); ++b) pairs.push_back({a, b});
         Placed placed;
-        Incidence incidence;
+        ContactIndex index;
         place(m, state.motion, true, placed);
-        refresh_contacts(m, pairs, state, incidence);
-        update_contacts(m, placed, 0.0, state, incidence);
+        refresh_contacts(m, placed, pairs, 0.0, state, index);
+        update_contacts(m, placed, 0.0, state, index);
         external_forces(m, state, state.load);
-        sum_contacts(m, state.contacts, incidence, state.load);
+        sum_contacts(m, state.contacts, index, state.load);
         // Blocks fit to 1e-15 m or so, and a joint of 1e10 Pa/m turns that into 1e-5 Pa; the stress is 1e5 Pa.
         CHECK(unbalanced_ratio(m, state) < 1e-9);
     }

@@ -70,8 +70,7 @@ TEST_CASE("the unbalanced ratio is measured against contact forces when they are
     scene.state.load[1].force = {1e5, 0.0};
     Contact contact{.part_a = 1, .part_b = 2, .joint = 0};
     scene.state.contacts.list = {contact};
-    scene.state.contacts.on_a = {{Vec2(-3e5, -4e5), 0.0}};
-    scene.state.contacts.on_b = {{Vec2(3e5, 4e5), 0.0}};
+    scene.state.contacts.reaction = {{Vec2(3e5, 4e5), 0.0, 0.0}};
     CHECK(unbalanced_ratio(scene.model, scene.state) == Approx(1e5 / 5e5));
     scene.model.gravity_y = TimeTable::constant(0.0);
     scene.state.contacts = {};

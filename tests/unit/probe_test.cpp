@@ -63,8 +63,7 @@ struct Bench {
                                 .shear_force = shear,
                                 .point = centre_of_pressure,
                                 .normal = {0, 1}}};
-        state.contacts.on_a = {{{0.0, -force}, -1.0}};
-        state.contacts.on_b = {{{-shear, force}, 2.0}};
+        state.contacts.reaction = {{{-shear, force}, -1.0, 2.0}};
     }
     double read(const ProbeSpec& spec) const { return make_probe(spec, model, state).read(model, state, {}); }
 };

@@ -1,0 +1,23 @@
+// What two parts that overlap do to each other before friction.
+#pragma once
+
+namespace talus {
+
+/// Normal part of a loaded contact, per unit of joint stiffness where the name says so. Positions and torques are taken from
+/// the centroid of block a.
+struct Pressed {
+    double fx = 0.0, fy = 0.0;        // m2 (times kn: N), force on b
+    double torque_a = 0.0;            // m3, of the force on b about the centroid of a (block a gets the opposite)
+    double torque_b = 0.0;            // m3, of the force on b about the centroid of b
+    double x = 0.0, y = 0.0;          // m, centre of pressure
+    double length = 0.0;              // m, loaded
+    double bonded_length = 0.0;       // m, of intact bond cells within
+    double overlap = 0.0;             // m, mean over the length; < 0 open
+    double along_normal = 0.0;        // m2 (times kn: N), > 0 pressed
+    double nx = 0.0, ny = 0.0;        // unit, from a to b
+    double rotation_stiffness = 0.0;  // m3, Int (s - centre)^2 ds over the loaded length, for the dashpot
+
+    bool loaded() const { return length > 0.0; }
+};
+
+}  // namespace talus

@@ -1,0 +1,318 @@
+// The loop over all contacts of one step: which kind each is, and what becomes of it.
+#include "contact/contacts.hpp"
+#include "contact/distance_potential.hpp"
+#include "contact/face_batch.hpp"
+#include "contact/idle.hpp"
+#include "contact/joint_memory.hpp"
+#include "contact/response.hpp"
+#include "contact/separation.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace talus {
+namespace {
+
+constexpr int chunk = 256;  // blocks per task; fixed, so that sums do not depend on the number of threads
+// Edges that meet at less than 10 degrees may not use the face path: which of them is in contact would depend on history.
+constexpr double smooth_cos = 0.985;
+
+struct Work {  // of one chunk of blocks, J
+    double friction = 0.0, damping = 0.0, released = 0.0;
+};
+
+class Evaluator {
+public:
+    Evaluator(const Model& model, const Placed& placed, double dt, State& state, ContactIndex& index, FaceKernel kernel)
+        : model_(model),
+          placed_(placed),
+          dt_(dt),
+          damping_(dt > 0.0 ? model.contact_damping : 0.0),
+          contacts_(state.contacts),
+          index_(index),
+          kernel_(kernel) {}
+
+    /// Contacts [begin, end) of the list.
+    void operator()(int begin, int end, Work& work) {
+        work_ = &work;
+        for (int i = begin; i < end; ++i) {
+            const Idle& idle = index_.idle[i];
+            if (idle.corner >= 0 && still_apart(model_, placed_, idle)) continue;
+            const Contact& c = contacts_.list[i];
+            if (idle.edge >= 0 && edge_separates(c, idle.edge)) continue;
+            if (plain_face(c))
+                collect(i);
+            else
+                evaluate(i);
+        }
+        flush();
+    }
+
+private:
+    struct Couple {  // the two sides of one contact
+        PlacedPart a, b;
+        BlockId block_a, block_b;
+        double dx, dy;  // m, from the centroid of a to that of b
+    };
+
+    Couple couple(const Contact& c) const {
+        const BlockId a = model_.parts.block[c.part_a], b = model_.parts.block[c.part_b];
+        const Vec2 &from = placed_.block[a].position, &to = placed_.block[b].position;
+        return {{model_, placed_, c.part_a}, {model_, placed_, c.part_b}, a, b, to.x() - from.x(), to.y() - from.y()};
+    }
+    Approach approach(const Couple& s) const {
+        const PlacedBlock &a = placed_.block[s.block_a], &b = placed_.block[s.block_b];
+        return {a.velocity.x(), a.velocity.y(), a.spin, b.velocity.x(), b.velocity.y(), b.spin, s.dx, s.dy};
+    }
+    double face_length(const Contact& c) const {
+        return c.face >= 0 ? model_.faces[c.face].s1 - model_.faces[c.face].s0 : 0.0;
+    }
+
+    // The usual answer for pairs that meet at a corner.
+    bool edge_separates(const Contact& c, int edge) const {
+        const Couple s = couple(c);
+        const bool of_a = edge >= s.a.first && edge < s.a.first + s.a.n;
+        const double distance = of_a ? separation_by_edge(s.a, edge - s.a.first, s.b, s.dx, s.dy)
+                                     : separation_by_edge(s.b, edge - s.b.first, s.a, -s.dx, -s.dy);
+        return distance >= -touch_depth(model_, c.part_a, c.part_b);
+    }
+    // Since the refresh both blocks may have moved by the skin, and may move back as far on the other side.
+    void rest(int i, const Separation& apart) {
+        const Contact& c = contacts_.list[i];
+        index_.idle[i] = keep_apart(model_, placed_, c.part_a, c.part_b, apart, 2.0 * index_.skin).idle;
+    }
+
+    // ---- faces without intact bonds: many at a time
+
+    bool plain_face(const Contact& c) const {
+        if (!c.alive || c.edge_a < 0 || c.edge_b < 0) return false;
+        return c.face >= 0 ? !bonded(model_.faces[c.face]) : model_.face_path;
+    }
+    bool bonded(const JointFace& face) const {  // still
+        if (!face.bonded) return false;
+        const auto first = contacts_.broken.begin() + face.first_cell;
+        return std::find(first, first + model_.joints[face.joint].cells, 0) != first + model_.joints[face.joint].cells;
+    }
+
+    void collect(int i) {
+        const Contact& c = contacts_.list[i];
+        const Couple s = couple(c);
+        const FaceLines f = face_lines(s.a, s.b, s.dx, s.dy, c.edge_a - s.a.first, c.edge_b - s.b.first);
+        const Joint& joint = model_.joints[c.joint];
+        const Approach v = approach(s);
+        FaceBatch& q = batch_;
+        const int k = q.count++;
+        q.slot[k] = i;
+        q.a0x[k] = f.a0x, q.a0y[k] = f.a0y, q.a1x[k] = f.a1x, q.a1y[k] = f.a1y, q.nax[k] = f.nax, q.nay[k] = f.nay;
+        q.b0x[k] = f.b0x, q.b0y[k] = f.b0y, q.b1x[k] = f.b1x, q.b1y[k] = f.b1y, q.nbx[k] = f.nbx, q.nby[k] = f.nby;
+        q.dx[k] = s.dx, q.dy[k] = s.dy, q.a_lo[k] = f.a_lo, q.a_hi[k] = f.a_hi, q.b_lo[k] = f.b_lo, q.b_hi[k] = f.b_hi;
+        q.vax[k] = v.vax, q.vay[k] = v.vay, q.spin_a[k] = v.spin_a, q.vbx[k] = v.vbx, q.vby[k] = v.vby;
+        q.spin_b[k] = v.spin_b;
+        q.kn[k] = joint.kn, q.ks[k] = joint.ks, q.tan_friction[k] = joint.tan_friction;
+        q.tan_friction_residual[k] = joint.tan_friction_residual, q.cohesion_residual[k] = joint.cohesion_residual;
+        q.weakens[k] = joint.weakens, q.tan_dilation[k] = joint.tan_dilation;
+        q.dilation_cutoff_slip[k] = joint.dilation_cutoff_slip;
+        q.force[k] = c.shear_force, q.energy[k] = c.shear_energy, q.slip[k] = c.slip, q.slip_sum[k] = c.slip_sum;
+        q.dilation[k] = c.dilation, q.slipped[k] = c.slipped, q.nx[k] = c.normal.x(), q.ny[k] = c.normal.y();
+        q.remembers[k] = c.face >= 0, q.s0[k] = 0.0, q.s1[k] = 1.0, q.sigma0[k] = q.sigma1[k] = q.face_length[k] = 0.0;
+        if (c.face >= 0) {
+            const JointFace& face = model_.faces[c.face];
+            q.s0[k] = face.s0, q.s1[k] = face.s1, q.sigma0[k] = face.sigma0, q.sigma1[k] = face.sigma1;
+            q.face_length[k] = face.s1 - face.s0;
+        }
+        if (q.count == FaceBatch::size) flush();
+    }
+
+    void flush() {
+        if (batch_.count == 0) return;
+        kernel_(batch_, dt_, damping_);
+        const int count = std::exchange(batch_.count, 0);
+        for (int k = 0; k < count; ++k) {
+            const int i = batch_.slot[k];
+            Contact& c = contacts_.list[i];
+            if (batch_.valid[k] == 0.0) {
+                c.face = c.face >= 0 ? end_face(c) : -1;
+                c.edge_a = c.edge_b = -1;
+                evaluate(i);
+            } else if (batch_.loaded[k] == 0.0) {
+                unload(i, couple(c));
+            } else {
+                take(k, i);
+            }
+        }
+    }
+
+    void take(int k, int i) {
+        const FaceBatch& q = batch_;
+        Contact& c = contacts_.list[i];
+        c.touching = 1;
+        c.sliding = q.sliding[k] != 0.0, c.slipped = q.slipped[k] != 0.0;
+        c.length = q.length[k], c.overlap = q.overlap[k] - q.dilation[k];
+        c.normal_force = q.normal_force[k], c.shear_force = q.force[k], c.shear_energy = q.energy[k];
+        c.strength = q.strength[k], c.slip = q.slip[k], c.slip_sum = q.slip_sum[k], c.dilation = q.dilation[k];
+        c.point = placed_.block[model_.parts.block[c.part_a]].position + Vec2(q.x[k], q.y[k]);
+        c.normal = {q.nx[k], q.ny[k]};
+        contacts_.reaction[i] = {{q.fx[k], q.fy[k]}, q.torque_a[k], q.torque_b[k]};
+        work_->friction += q.friction[k];
+        work_->damping += q.damping[k];
+        work_->released += q.released[k];
+    }
+
+    // ---- corners, bonds, and what changes its kind: one at a time
+
+    void evaluate(int i) {
+        Contact& c = contacts_.list[i];
+        const Couple s = couple(c);
+        Couple shifted = s;  // slip has thickened a joint that dilates: the same as moving b against a
+        const double thicker_x = c.dilation * c.normal.x(), thicker_y = c.dilation * c.normal.y();
+        shifted.dx -= thicker_x;
+        shifted.dy -= thicker_y;
+        Pressed pressed = press(i, shifted);
+        if (!pressed.loaded()) return unload(i, s);
+        pressed.torque_b -= thicker_x * pressed.fy - thicker_y * pressed.fx;  // the force acts at the true place
+        load(i, s, pressed);
+    }
+
+    // The normal part; not loaded if the pair carries nothing. Sets the edges of the contact.
+    Pressed press(int i, const Couple& s) {
+        Contact& c = contacts_.list[i];
+        if (c.face >= 0) {
+            const FaceContact face = remembered_face(c, s);
+            if (face.state != FaceState::invalid) return face.pressed;
+            c.face = end_face(c);
+        }
+        c.edge_a = c.edge_b = -1;
+        const Separation apart = separation(s.a, s.b, s.dx, s.dy);
+        if (apart.distance >= -touch_depth(model_, c.part_a, c.part_b)) {
+            if (!c.alive) rest(i, apart);
+            return {};
+        }
+        if (model_.face_path) {
+            const Vec2& n = apart.of_a ? s.a.normal(apart.edge) : s.b.normal(apart.edge);
+            const int other = facing_edge(apart.of_a ? s.b : s.a, n.x(), n.y());
+            const int ea = apart.of_a ? apart.edge : other, eb = apart.of_a ? other : apart.edge;
+            if (distinct(s.a, ea) && distinct(s.b, eb) && !s.a.internal[ea] && !s.b.internal[eb]) {
+                const FaceContact face = face_contact(s.a, s.b, s.dx, s.dy, ea, eb, nullptr);
+                if (face.state == FaceState::loaded) {
+                    c.edge_a = s.a.first + ea;
+                    c.edge_b = s.b.first + eb;
+                    return face.pressed;
+                }
+            }
+        }
+        return distance_potential(s.a, s.b, s.dx, s.dy);
+    }
+
+    static bool distinct(const PlacedPart& s, int k) {
+        const Vec2 &n = s.normal(k), &p = s.normal(s.previous(k)), &q = s.normal(s.next(k));
+        return n.x() * p.x() + n.y() * p.y() < smooth_cos && n.x() * q.x() + n.y() * q.y() < smooth_cos;
+    }
+
+    FaceContact remembered_face(Contact& c, const Couple& s) {
+        const JointFace& face = model_.faces[c.face];
+        const Joint& joint = model_.joints[c.joint];
+        const int ea = face.edge_a - s.a.first, eb = face.edge_b - s.b.first;
+        const FaceMemory memory = joint_memory(face, joint, contacts_.broken);
+        FaceContact contact = face_contact(s.a, s.b, s.dx, s.dy, ea, eb, &memory);
+        if (contact.largest_pull * joint.kn > joint.tension &&
+            break_cells(s.a, s.b, s.dx, s.dy, ea, eb, memory, joint.tension / joint.kn, &contacts_.broken[face.first_cell]) >
+                0) {
+            contact = face_contact(s.a, s.b, s.dx, s.dy, ea, eb, &memory);
+            if (contact.pressed.bonded_length == 0.0) c.slipped = 1;  // all of it has broken: residual strength
+        }
+        return contact;
+    }
+
+    void load(int i, const Couple& s, const Pressed& p) {
+        Contact& c = contacts_.list[i];
+        ShearMemory shear{c.shear_force, c.shear_energy, c.slip, c.slip_sum, c.dilation, c.slipped ? 1.0 : 0.0};
+        const Response r = respond(model_.joints[c.joint], p, approach(s), dt_, damping_, face_length(c),
+                                   {c.normal.x(), c.normal.y()}, shear);
+        if (r.bonds_fail) break_bonds(model_.faces[c.face]);
+        c.touching = c.alive = 1;
+        index_.idle[i].edge = index_.idle[i].corner = -1;
+        c.sliding = r.sliding;
+        c.slipped = shear.slipped != 0.0;
+        c.length = p.length;
+        c.overlap = p.overlap - shear.dilation;
+        c.normal_force = r.normal_force;
+        c.shear_force = shear.force;
+        c.shear_energy = shear.energy;
+        c.strength = r.strength;
+        c.slip = shear.slip;
+        c.slip_sum = shear.slip_sum;
+        c.dilation = shear.dilation;
+        c.point = placed_.block[s.block_a].position + Vec2(p.x, p.y);
+        c.normal = {p.nx, p.ny};
+        contacts_.reaction[i] = {{r.fx, r.fy}, r.torque_a, r.torque_b};
+        work_->friction += r.friction;
+        work_->damping += r.damping;
+        work_->released += r.released;
+    }
+
+    void unload(int i, const Couple& s) {
+        Contact& c = contacts_.list[i];
+        if (!c.alive) return;
+        if (c.shear_force != 0.0) {
+            const Vec2 arm = c.point - placed_.block[s.block_a].position;
+            const Vector v = relative_velocity(approach(s), arm.x(), arm.y(), dt_);
+            work_->released += c.shear_energy;
+            work_->friction -= 0.5 * c.shear_force * (v.y * c.normal.x() - v.x * c.normal.y()) * dt_;
+        }
+        c.touching = 0;
+        c.sliding = 0;
+        c.length = c.normal_force = c.shear_force = c.shear_energy = c.strength = 0.0;
+        contacts_.reaction[i] = {};
+        const Separation apart = separation(s.a, s.b, s.dx, s.dy);
+        c.overlap = -apart.distance;
+        if ((c.face < 0 && c.slip == 0.0) || apart.distance > memory_reach(model_, c.part_a, c.part_b)) {
+            if (c.face >= 0) end_face(c);
+            const PartId part_a = c.part_a, part_b = c.part_b;
+            c = Contact{part_a, part_b, model_.joint_between(part_a, part_b)};
+            if (apart.distance >= -touch_depth(model_, c.part_a, c.part_b)) rest(i, apart);
+        }
+    }
+
+    // The faces have turned away or slid off: bonds and initial stress are over, for good.
+    int end_face(const Contact& c) {
+        const JointFace& face = model_.faces[c.face];
+        if (face.bonded) break_bonds(face);
+        return -1;
+    }
+
+    void break_bonds(const JointFace& face) {
+        for (int i = 0; i < model_.joints[face.joint].cells; ++i)
+            if (!contacts_.broken[face.first_cell + i]) contacts_.broken[face.first_cell + i] = 2;
+    }
+
+    const Model& model_;
+    const Placed& placed_;
+    double dt_, damping_;
+    Contacts& contacts_;
+    ContactIndex& index_;
+    FaceKernel kernel_;
+    FaceBatch batch_{};
+    Work* work_ = nullptr;
+};
+
+}  // namespace
+
+void update_contacts(const Model& model, const Placed& placed, double dt, State& state, ContactIndex& index) {
+    static const FaceKernel kernel = face_kernel(best_vector_unit());
+    const int nb = model.blocks.size(), chunks = (nb + chunk - 1) / chunk;
+    std::vector<Work> work(chunks);
+#pragma omp parallel
+    {
+        Evaluator evaluate(model, placed, dt, state, index, kernel);
+#pragma omp for schedule(dynamic)
+        for (int k = 0; k < chunks; ++k)
+            evaluate(index.first_of_a[k * chunk], index.first_of_a[std::min((k + 1) * chunk, nb)], work[k]);
+    }
+    for (const Work& w : work) {
+        state.ledger.friction += w.friction;
+        state.ledger.contact_damping += w.damping;
+        state.ledger.released += w.released;
+    }
+}
+
+}  // namespace talus
