@@ -161,10 +161,10 @@ void Recorder::save_restart(const Simulation& simulation) {
 
 void Recorder::finish(const Simulation& simulation, const std::string& status, double wall_time) {
     if (status != "diverged") save_restart(simulation);
-    writer_.finish({status, wall_time, simulation.state().total_steps, simulation.state().time});
+    writer_.finish({status, wall_time, simulation.state().total_steps, simulation.state().time, simulation.energy_gain()});
 }
 
-void Recorder::close(const std::string& status) { writer_.finish({status, 0.0, 0, 0.0}); }
+void Recorder::close(const std::string& status) { writer_.finish({status, 0.0, 0, 0.0, 0.0}); }
 
 std::string Recorder::restart_file() const { return restart_path(path()); }
 

@@ -9,13 +9,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 #include <utility>
 
 namespace talus {
 namespace {
 
-constexpr int calm_interval = 10;  // steps between looks at the unbalanced ratio
-constexpr int calm_needed = 3;     // looks in a row below the limit: one may be a turning point of the motion
+constexpr int calm_interval = 10;     // steps between looks at the unbalanced ratio
+constexpr int energy_interval = 100;  // steps between looks at the energy: hardly costs, and an instability takes as many
+constexpr int calm_needed = 3;        // looks in a row below the limit: one may be a turning point of the motion
 
 StageSpec last_stage(const Scenario& scenario) {
     StageSpec stage;
@@ -94,6 +96,7 @@ void Simulation::step() {
     ++steps_done_;
     check_speed();
     state_.step_halvings = step_halvings(state_.stage_step, state_.step_halvings, speed_, stable_.thinnest);
+    if (state_.total_steps % energy_interval == 0) check_energy();
     lap(Part::move);
 }
 
@@ -122,6 +125,27 @@ void Simulation::check_speed() const {
                               "; the step is too long for the stiffness, or loads grow without bound: leave "
                               "run.time_step out, or look at the last frame");
     }
+}
+
+// K - (dt^2/8) F M^-1 F + stored + dissipated - work is what kick-drift-kick keeps exactly while contacts are linear
+// springs. The sum of energies itself swings by the term with F, by more than the energy there is when the step is near its
+// limit. Dashpots count with half of what is booked: in the step in which a contact begins, their force acts at its end
+// only.
+void Simulation::check_energy() {
+    const Energies e = energies();
+    Ledger& ledger = state_.ledger;
+    const double there = ledger.total0 + e.gravity + e.loads + e.driven;
+    ledger.largest = std::max({ledger.largest, there, std::abs(e.gravity), std::abs(e.loads), std::abs(e.driven)});
+    const double dt = std::ldexp(state_.stage_step, -state_.step_halvings);
+    const double swing = e.kinetic - kinetic_energy_of_ledger(model_, state_, dt);
+    const double gained = e.total() - ledger.total0 - swing - 0.5 * e.contact_damping;
+    ledger.gained = std::max(ledger.gained, gained);
+    if (gained <= energy_explosion * ledger.largest) return;
+    std::ostringstream text;
+    text << "blocks gained " << gained << " J from nowhere, the largest energy of the run is " << ledger.largest
+         << " J: t = " << state_.time << " s, step " << state_.total_steps << " of " << state_.stage_step
+         << " s (limit estimated at " << stable_.estimate << " s): leave the time step out, or look at the last frames";
+    throw DivergenceError(text.str());
 }
 
 double Simulation::recorded_time() const {
@@ -279,7 +303,9 @@ void Simulation::begin_stage() {
 }
 
 bool Simulation::end_stage() {
+    check_energy();
     if (stage().reset) {
+        state_.earlier_gain = energy_gain();
         const int nb = model_.blocks.size();
         for (BlockId b = 0; b < nb; ++b) {
             if (model_.blocks.held(b)) continue;
@@ -325,6 +351,11 @@ Energies Simulation::energies() const {
     e.loads = l.loads;
     e.driven = l.driven;
     return e;
+}
+
+double Simulation::energy_gain() const {
+    const Ledger& ledger = state_.ledger;
+    return std::max(state_.earlier_gain, ledger.gained > 0.0 ? ledger.gained / ledger.largest : 0.0);
 }
 
 double Simulation::ledger_error() const { return talus::ledger_error(model_, state_, state_.stage_step); }

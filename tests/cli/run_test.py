@@ -10,7 +10,7 @@ import signal
 import subprocess
 import unittest
 
-from program import INCLINE, SLOPE, TALUS, Program, interrupt, main, SOURCE
+from program import INCLINE, SLOPE, STACK, TALUS, Program, interrupt, main, SOURCE
 
 
 class Results(Program):
@@ -104,6 +104,22 @@ class ExitCodes(Program):
         out, _ = self.talus("info", "slope.h5")
         self.assertIn("diverged", out)
         self.assertGreaterEqual(int(self.attribute("slope.h5", "frames").split(",")[0]), 25)
+
+    def test_3_if_the_step_makes_energy_and_the_frames_before_stay(self):
+        self.write("stack.yaml", STACK)
+        _, err = self.talus("run", "stack.yaml", "--set", "run.time_step=3e-3", "--set", "record.frames.every=0.02", code=3)
+        self.assertIn("from nowhere", err)
+        self.assertIn("diverged", self.talus("info", "stack.h5")[0])
+        self.assertGreaterEqual(int(self.attribute("stack.h5", "frames").split(",")[0]), 4)
+        self.assertGreater(float(self.attribute("stack.h5", "energy_gain")), 10)
+
+    def test_a_warning_if_energy_is_gained_also_before_the_last_reset(self):
+        stages = "stages: [{name: ring, time_step: %s, until: {time: 1}, reset: true}]\n"
+        for step, gained in (("1.1e-3", True), ("1e-4", False)):
+            self.write("stack.yaml", STACK + stages % step)
+            out, _ = self.talus("run", "stack.yaml", "-o", "stack.h5", "--force", "--set", "run.time_step=1e-4", "--until", "0.01")
+            self.assertEqual("WARNING" in out, gained, out)
+            self.assertEqual(float(self.attribute("stack.h5", "energy_gain")) > 0.05, gained)
 
     def test_4_if_the_file_may_not_grow_and_what_is_complete_stays(self):
         self.write("slope.yaml", SLOPE)
