@@ -101,6 +101,12 @@ int carry_out(Simulation& simulation, Recorder& recorder, Watch* watch, Entry en
         recorder.finish(simulation, "diverged", clock.seconds());
         std::printf("results up to the last good frame: %s\n", recorder.path().c_str());
         throw;
+    } catch (const InputError&) {
+        progress.done();
+        recorder.finish(simulation, "refused", clock.seconds());
+        std::printf("stage %s cannot begin; results up to its start: %s\n", simulation.stage().name.c_str(),
+                    recorder.path().c_str());
+        throw;
     } catch (const OutputError&) {
         progress.done();
         std::printf("results up to the last complete frame: %s\n", recorder.path().c_str());

@@ -31,7 +31,7 @@ struct RunInfo {  // provenance: enough to run the same again
 };
 
 struct RunSummary {
-    std::string status;      // complete | interrupted | diverged | stopped
+    std::string status;      // complete | interrupted | diverged | stopped | refused
     double wall_time = 0.0;  // s
     std::int64_t steps = 0;
     double end_time = 0.0;     // s

@@ -184,8 +184,9 @@ struct RunSpec {
     Until until;
     std::string solver = "auto";      // auto | explicit
     std::optional<double> time_step;  // s; absent: auto
-    double step_fraction = 0.8;       // of the rigorous bound, when automatic
-    bool unchecked = false;           // accept a time step above the stable estimate
+    Where time_step_where;
+    double step_fraction = 0.8;  // of the rigorous bound, when automatic
+    bool unchecked = false;      // accept a time step above the stable estimate
     DampingSpec damping;
     std::string search = "isu";
     std::optional<double> skin;  // m; absent: automatic
@@ -206,6 +207,7 @@ struct StageSpec {  // in order, before `run`
     Until until;
     DampingSpec damping;
     std::optional<double> time_step;
+    Where time_step_where;
 };
 
 /// A number observed while a run goes on. What it may be: docs/scenario-reference.md, table of quantities.

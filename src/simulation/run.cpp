@@ -148,6 +148,7 @@ void Recorder::after_step(const Simulation& simulation) {
 
 void Recorder::end_stage(const Simulation& simulation) {
     if (simulation.recorded() && last_frame_time_ < simulation.state().time) frame_and_restart(simulation);
+    if (simulation.state().stage + 1 < simulation.stage_count()) save_restart(simulation);  // the next one may be refused
 }
 
 void Recorder::save_restart(const Simulation& simulation) {
@@ -160,7 +161,7 @@ void Recorder::save_restart(const Simulation& simulation) {
 }
 
 void Recorder::finish(const Simulation& simulation, const std::string& status, double wall_time) {
-    if (status != "diverged") save_restart(simulation);
+    if (status != "diverged" && status != "refused") save_restart(simulation);
     writer_.finish({status, wall_time, simulation.state().total_steps, simulation.state().time, simulation.energy_gain()});
 }
 

@@ -25,6 +25,7 @@ StageSpec last_stage(const Scenario& scenario) {
     stage.until = scenario.run.until;
     stage.damping = scenario.run.damping;
     stage.time_step = scenario.run.time_step;
+    stage.time_step_where = scenario.run.time_step_where;
     return stage;
 }
 
@@ -39,6 +40,19 @@ double default_skin(const Model& model) {
 }
 
 VectorTable frozen(const VectorTable& table) { return {table.x.frozen(), table.y.frozen()}; }
+
+void change_joints(const StageSpec& stage, Model& model) {
+    for (const JointSpec& joint : stage.joints)
+        for (Joint& mine : model.joints)
+            if (mine.name == joint.name) mine = make_joint(joint);
+}
+
+std::string refusal(const StableStep& stable) {
+    std::ostringstream text;
+    text << "is above the stable step, estimated at " << stable.estimate << " s (rigorous bound " << stable.bound
+         << " s); leave it out, or set run.unchecked: true to see what happens";
+    return text.str();
+}
 
 std::vector<StageSpec> stages_of(const Scenario& scenario) {
     std::vector<StageSpec> stages = scenario.stages;
@@ -212,10 +226,7 @@ void Simulation::drop_scratch() {
 
 void Simulation::apply_stage() {
     const bool last = state_.stage + 1 == stage_count();
-    for (int i = 0; i <= state_.stage; ++i)
-        for (const JointSpec& joint : stages_[i].joints)
-            for (Joint& mine : model_.joints)
-                if (mine.name == joint.name) mine = make_joint(joint);
+    for (int i = 0; i <= state_.stage; ++i) change_joints(stages_[i], model_);
     model_.local_damping = stage().damping.local;
     model_.contact_damping = stage().damping.contact;
     model_.release_time = stage().release;
@@ -263,6 +274,35 @@ void Simulation::delete_blocks() {
     boxed_position_.clear();
 }
 
+// Of stages to come as much as can be known before the first step: with the blocks, joints and damping that they will have,
+// but with the contacts of now. Each is looked at again, with its own contacts, when it begins.
+void Simulation::check_stages() const {
+    const int end = state_.total_steps == 0 ? stage_count() : state_.stage + 1;
+    Model model = model_;
+    State state = state_;
+    std::vector<Fault> faults;
+    for (int i = state_.stage; i < end; ++i) {
+        const StageSpec& at = stages_[i];
+        if (i > state_.stage) {
+            for (const Selector& selector : at.remove)
+                for (BlockId b : select(model, state, selector)) state.removed[b] = 1;
+            make_loads(model, state, at.loads_given ? at.loads : scenario_.loads);  // throws if a block is not there
+            std::erase_if(state.contacts.list, [&](const Contact& c) {
+                return state.removed[model.parts.block[c.part_a]] || state.removed[model.parts.block[c.part_b]];
+            });
+        }
+        change_joints(at, model);
+        model.contact_damping = at.damping.contact;
+        if (!at.time_step || scenario_.run.unchecked) continue;
+        const StableStep stable = stable_step(model, placed_, state);
+        const bool listed = i < static_cast<int>(scenario_.stages.size());
+        if (*at.time_step > stable.estimate)
+            faults.push_back({at.time_step_where, (listed ? "stages[" + std::to_string(i) + "]" : "run") + ".time_step",
+                              refusal(stable)});
+    }
+    if (!faults.empty()) throw InputError(std::move(faults));
+}
+
 void Simulation::begin_stage() {
     // What a stage changes (blocks deleted, stiffness) is no drift of the integration.
     const double drift = state_.step > 0 ? energy_drift() : 0.0;
@@ -282,14 +322,9 @@ void Simulation::begin_stage() {
     update_forces(0.0);
 
     stable_ = stable_step(model_, placed_, state_);
+    check_stages();
     const StageSpec& now = stage();
     if (now.time_step) {
-        if (*now.time_step > stable_.estimate && !scenario_.run.unchecked)
-            throw InputError({Fault{{scenario_.file, 0},
-                                    now.name + ".time_step",
-                                    "is above the stable step, estimated at " + std::to_string(stable_.estimate) +
-                                        " s (rigorous bound " + std::to_string(stable_.bound) +
-                                        " s); leave it out, or set run.unchecked: true to see what happens"}});
         state_.stage_step = *now.time_step;
     } else {
         double dt = scenario_.run.step_fraction * stable_.bound;

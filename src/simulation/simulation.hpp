@@ -33,8 +33,8 @@ public:
     Simulation(const Scenario& scenario, Scene scene, State saved);
 
     /// Prepares stage `state().stage`: deletes blocks, changes properties, chooses the step. Called by run() at the start of
-    /// every stage, not after a restart in its middle. Throws InputError if the user's time step is above the stable
-    /// estimate.
+    /// every stage, not after a restart in its middle. Throws InputError if a time step of the user is above the stable
+    /// estimate or a block is not there, at the first stage also for what can be known of later ones.
     void begin_stage();
     /// Resets what the stage asks for and moves on; false if it was the last one.
     bool end_stage();
@@ -74,6 +74,7 @@ public:
 private:
     void apply_stage();  // what a stage changes in the model; idempotent
     void delete_blocks();
+    void check_stages() const;
     void update_forces(double dt);
     bool left_boxes() const;
     void refresh();
