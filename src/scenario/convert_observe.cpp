@@ -180,7 +180,6 @@ RecordSpec convert_record(const Cursor& at) {
             history["name"].fault("a history of this name is there already");
     }
     record.contacts = at["contacts"].yes();
-    record.settling = at["settling"].yes();
     return record;
 }
 

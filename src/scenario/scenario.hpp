@@ -231,8 +231,7 @@ struct RecordSpec {
     std::optional<double> frame_every;  // s
     std::optional<int> frame_count;     // frames after the first one; default 50
     std::vector<HistorySpec> history;
-    bool contacts = true;   // write the contacts of every frame
-    bool settling = false;  // also record stages that end in a reset
+    bool contacts = true;  // write the contacts of every frame
 };
 
 struct ExpectSpec {

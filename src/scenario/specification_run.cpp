@@ -122,8 +122,7 @@ Shape record() {
     return table("record", "What goes into the results file.",
                  {{"frames", frames, fallback("{}"), "pictures of the whole state"},
                   {"history", list_of(history), fallback("[]"), "numbers along the run"},
-                  {"contacts", boolean(), fallback("true"), "write the contacts of every frame"},
-                  {"settling", boolean(), fallback("false"), "also record stages that end in a reset"}});
+                  {"contacts", boolean(), fallback("true"), "write the contacts of every frame"}});
 }
 
 Shape expectation() {
