@@ -76,8 +76,8 @@ Simulation::Simulation(const Scenario& scenario, Scene scene)
     omp_set_num_threads(scenario.run.threads);
 #endif
     boundary_loads_.assign(model_.loads.begin(), model_.loads.begin() + model_.boundary_loads);
-    for (int i = 0; i < stage_count(); ++i)
-        if (stages_[i].reset) first_recorded_ = std::min(i + 1, stage_count() - 1);
+    for (int i = 0; i + 1 < stage_count(); ++i)
+        if (stages_[i].reset) first_recorded_ = i + 1;
 }
 
 Simulation::Simulation(const Scenario& scenario, Scene scene, State saved) : Simulation(scenario, std::move(scene)) {
@@ -339,6 +339,7 @@ void Simulation::begin_stage() {
 
 bool Simulation::end_stage() {
     check_energy();
+    if (state_.stage + 1 == stage_count()) return false;  // a reset prepares what follows; here nothing does
     if (stage().reset) {
         state_.earlier_gain = energy_gain();
         const int nb = model_.blocks.size();
@@ -355,7 +356,6 @@ bool Simulation::end_stage() {
         for (Contact& c : state_.contacts.list)
             if (c.dilation == 0.0) c.slip = c.slip_sum = 0.0;
     }
-    if (state_.stage + 1 == stage_count()) return false;
     ++state_.stage;
     return true;
 }

@@ -69,6 +69,17 @@ cases:
         with open(self.folder / "tables/energies.csv") as file:
             self.assertEqual(len(list(csv.reader(file))), 52)  # a header, the start and 50 frames
 
+    def test_a_run_may_end_with_its_last_stage(self):
+        scene = INCLINE.replace("run: {until: {time: 0.1}}", "run: {}")
+        self.write("a.yaml", scene + "stages: [{name: slide, until: {time: 0.1}}]\n")
+        self.write("b.yaml", INCLINE)
+        self.write("c.yaml", scene + "stages: [{name: slide, until: {time: 0.1}, reset: true}]\n")  # nothing to prepare
+        for name in "abc":
+            self.talus("run", f"{name}.yaml")
+        for name in "ac":
+            self.assert_same_results("b.h5", f"{name}.h5", apart_from=["/talus/canonical_json", "/talus/scenario"])
+        self.assertRegex(self.talus("check", "a.yaml")[0], r"1 stage, \d")
+
     def test_search_and_threads_leave_no_trace_in_the_results(self):
         self.write("slope.yaml", SLOPE)
         self.talus("run", "slope.yaml", "--until", "0.1", "-o", "a.h5")
