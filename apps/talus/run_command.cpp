@@ -90,6 +90,8 @@ int carry_out(Simulation& simulation, Recorder& recorder, Watch* watch, Entry en
         std::fflush(stdout);
     };
     options.progress = [&](const Simulation& s) { progress(s); };
+    std::string unsettled;
+    options.out_of_time = [&](const Simulation& s) { unsettled += out_of_time(s) + "\n"; };
     options.interrupted = [] { return asked_to_stop.load(); };
     if (entry == Entry::resumed) progress.stage_begun(simulation);
 
@@ -126,12 +128,8 @@ int carry_out(Simulation& simulation, Recorder& recorder, Watch* watch, Entry en
     }
     int failed = 0;
     if (watch) failed = print_verdicts(watch->judge(), "  ");
-    if (outcome == Outcome::no_equilibrium) {
-        std::printf("a stage that was to end in equilibrium ran out of time: unbalanced ratio %.2g\n",
-                    unbalanced_ratio(simulation.model(), simulation.state()));
-        return not_met;
-    }
-    return failed > 0 ? not_met : ok;
+    std::printf("%s", unsettled.c_str());
+    return failed > 0 || outcome == Outcome::no_equilibrium ? not_met : ok;
 }
 
 std::string default_output(const std::string& scenario) { return std::filesystem::path(scenario).stem().string() + ".h5"; }

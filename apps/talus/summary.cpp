@@ -105,6 +105,13 @@ std::string number(double value, const char* unit) {
     return text;
 }
 
+std::string out_of_time(const Simulation& simulation) {
+    const StageSpec& stage = simulation.stage();
+    return "stage " + stage.name + " did not come to equilibrium in its " + number(*stage.until.time, "s") +
+           ": unbalanced ratio " + number(unbalanced_ratio(simulation.model(), simulation.state())) + ", not below " +
+           number(*stage.until.equilibrium);
+}
+
 void print_stage(const Simulation& simulation) {
     const StableStep& stable = simulation.stable();
     std::printf("%s: step %s (rigorous bound %s, limit estimated at %s)\n", simulation.stage().name.c_str(),

@@ -70,7 +70,9 @@ struct RunOptions {
     Watch* watch = nullptr;                              // none: expectations are not judged
     std::function<void(const Simulation&)> stage_begun;  // after its step is chosen
     std::function<void(const Simulation&)> progress;     // called every step; cheap
-    std::function<bool()> interrupted;                   // asked every step
+    /// A stage that was to end in equilibrium has run out of time; called at its very end, and the run goes on.
+    std::function<void(const Simulation&)> out_of_time;
+    std::function<bool()> interrupted;  // asked every step
     Entry entry = Entry::fresh;
 };
 

@@ -4,6 +4,7 @@ import csv
 import json
 import os
 import random
+import re
 import resource
 import shutil
 import signal
@@ -106,6 +107,18 @@ class ExitCodes(Program):
         self.write("slope.yaml", INCLINE.replace("{time: 0.1}", "{time: 0.02, equilibrium: 1e-9}"))
         self.assertIn("equilibrium", self.talus("run", "slope.yaml", code=1)[0])
         self.assertIn("stopped", self.talus("info", "slope.h5")[0])
+
+    def test_1_with_the_ratio_of_the_stage_that_ran_out_of_time(self):
+        # Its own weight is all that acts on a block that falls: ratio 1. Without gravity, afterwards, nothing acts.
+        self.write("fall.yaml", """\
+materials: {rock: {density: 2500}}
+blocks: [{name: cube, rectangle: {corner: [0, 0], size: [1, 1]}}]
+stages: [{name: fall, gravity: [0, -10], until: {time: 0.01, equilibrium: 1e-3}}]
+run: {until: {time: 0.01}}
+""")
+        out, _ = self.talus("run", "fall.yaml", code=1)
+        self.assertRegex(out, r"unbalanced +0 of")
+        self.assertIn("stage fall did not come to equilibrium in its 0.01 s: unbalanced ratio 1, not below 0.001\n", out)
 
     def test_3_if_the_run_diverges_and_the_good_frames_stay(self):
         # A load that grows without bound: no step is short enough.
