@@ -153,6 +153,9 @@ int run_command(const RunArguments& arguments) {
 }
 
 int resume_command(const std::string& results, int threads) {
+    if (!std::filesystem::exists(restart_path(results)))
+        throw InputError(restart_path(results) + ": is not there; a run goes on from this file, which it left beside its " +
+                         "results: bring it back, or run the scenario again");
     const RestartInfo info = read_restart_info(restart_path(results));
     Scenario scenario = read_noted(info);
     if (scenario.hash != info.scenario_hash)

@@ -141,6 +141,7 @@ struct Selector {
     std::optional<Vec2> at;
     Polygon inside;
     Where where;
+    std::string key;  // path in the file
 };
 
 struct LoadSpec {
@@ -219,6 +220,7 @@ struct ProbeSpec {
     std::optional<Vec2> joint;  // the contact or joint face nearest to this place at the start
     std::string block;
     Where where;
+    std::string key;  // path in the file of what says the place
 };
 
 struct HistorySpec {

@@ -183,7 +183,7 @@ void check_probes(const Simulation& simulation) {
             make_probe(probe, simulation.model(), simulation.first_state());
         } catch (const InputError& error) {
             const Fault& found = error.faults().front();  // a history reads several quantities at one place: said once
-            if (faults.empty() || faults.back().where.line != found.where.line || faults.back().message != found.message)
+            if (faults.empty() || faults.back().key != found.key || faults.back().message != found.message)
                 faults.push_back(found);
         }
     }

@@ -36,7 +36,9 @@ SCENARIOS = {
     "bolts": (INCLINE + "bolts: []\n", r"bolts: not available yet", "bolts"),
     "deformation": (replaced("density: 2500", "density: 2500, young: 5e10"), r"materials\.rock\.young: not available yet", "young"),
     "negative time": (replaced("time: 0.1", "time: -1"), r"run\.until\.time: ", "-1"),
-    "point outside": (replaced("point: [6.75, 4]", "point: [60, 4]"), r"no block contains the point", "[60, 4]"),
+    "point outside": (replaced("point: [6.75, 4]", "point: [60, 4]"), r"record\.history\[0\]\.point: no block contains the point", "[60, 4]"),
+    "expectation outside": (INCLINE + "expect:\n  - quantity: max_normal_stress\n    joint: [1, 1]\n    below: 1\n  - quantity: spin\n"
+                            "    point: [60, 4]\n    below: 1\n", r"expect\[1\]\.point: no block contains the point", "point: [60, 4]"),
     "no YAML": (INCLINE + "loads: [{\n", r"", None),
 }
 
@@ -100,7 +102,7 @@ class BadInput(Program):
   - {until: {time: 0.01}}
   - {until: {time: 0.01}, delete: [[60, 4]]}
 """)
-        self.refused("run", "slope.yaml", report=r"^slope\.yaml:13 .*no block contains the point")
+        self.refused("run", "slope.yaml", report=r"^slope\.yaml:13 stages\[1\]\.delete\[0\]: no block contains the point")
 
     def test_a_step_that_is_found_too_long_when_its_stage_begins(self):
         self.write("stack.yaml", STACK + "stages: [{name: settle, damping: {local: 0.8}, until: {time: 0.1}}]\n")
@@ -168,6 +170,8 @@ class BadInput(Program):
             (self.folder / name).write_bytes(good[name])
         self.refused("info", "slope.yaml", report="slope.yaml")
         self.refused("resume", "other.h5", report=r"other\.")
+        (self.folder / "slope.restart.h5").unlink()
+        self.refused("resume", "slope.h5", report=r"^slope\.restart\.h5: is not there; .*run the scenario again")
 
 
 if __name__ == "__main__":

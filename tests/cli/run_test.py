@@ -27,6 +27,19 @@ class Results(Program):
         self.assertNotEqual((self.folder / "slope.h5").read_bytes(), first)
         self.assertFalse((self.folder / "slope-3.h5").exists())
 
+    def test_check_replaces_no_file_either(self):
+        self.write("slope.yaml", INCLINE)
+        self.talus("run", "slope.yaml")
+        before = self.files()
+        out, _ = self.talus("check", "slope.yaml", "--geometry", "slope.h5")
+        self.assertRegex(out, r"geometry +slope-2\.h5")
+        after = self.files()
+        self.assertEqual(after.keys() - before.keys(), {"slope-2.h5"})
+        self.assertEqual({name: after[name] for name in before}, before)  # results and restart file
+        self.assertIn("checked", self.talus("info", "slope-2.h5")[0])
+        self.talus("check", "slope.yaml", "--geometry", "slope.h5", "--force")
+        self.assertIn("checked", self.talus("info", "slope.h5")[0])
+
     def test_set_and_case_change_the_scenario_and_are_noted(self):
         self.write("slope.yaml", INCLINE + """\
 cases:
