@@ -15,6 +15,16 @@ from program import INCLINE, SLOPE, STACK, TALUS, Program, interrupt, main, SOUR
 
 
 class Results(Program):
+    def test_one_block_needs_no_joint(self):
+        self.write("fall.yaml", """\
+gravity: [0, -10]
+materials: {rock: {density: 2500}}
+blocks: [{name: cube, rectangle: {corner: [0, 0], size: [1, 1]}}]
+run: {until: {time: 1}}
+expect: [{quantity: displacement, block: cube, component: y, value: -5, tolerance: 1e-9}]
+""")
+        self.talus("run", "fall.yaml")
+
     def test_earlier_results_are_never_lost(self):
         self.write("slope.yaml", INCLINE)
         self.talus("run", "slope.yaml")
