@@ -58,9 +58,9 @@ public:
     Energies energies() const;
     double energy_drift() const { return energies().total() - state_.ledger.total0; }  // J
     /// Largest energy that came from nowhere, over the largest energy of the run (at least the work of gravity, of loads and
-    /// of driven blocks); looked at every 100 steps and at the end of each stage. The oscillation of the leapfrog, which
-    /// comes and goes, does not count. Above `energy_alarm` the run is not to be trusted; beyond `energy_explosion` it
-    /// diverges.
+    /// of driven blocks); looked at every 100 steps and at the last whole step of a stage that has a time. The oscillation
+    /// of the leapfrog, which comes and goes, does not count. Above `energy_alarm` the run is not to be trusted; beyond
+    /// `energy_explosion` it diverges.
     double energy_gain() const;
     std::int64_t steps_done() const { return steps_done_; }  // in this process
     double ledger_error() const;                             // J
