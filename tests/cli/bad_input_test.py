@@ -112,11 +112,11 @@ class BadInput(Program):
         self.assertIn("stage run cannot begin; results up to its start: stack.h5", out)
         self.assertEqual(self.attribute("stack.h5", "status"), "refused")
         self.assertAlmostEqual(float(self.attribute("stack.h5", "end_time")), 0.1)
-        before = self.files()
-        self.assertIn("stack.restart.h5", before)
-        _, err = self.talus("resume", "stack.h5", code=2)
-        self.assertRegex(err, r"run\.time_step: .*stable step")
-        self.assertEqual(self.files()["stack.restart.h5"], before["stack.restart.h5"])
+        frames = self.attribute("stack.h5", "frames")
+        for _ in range(2):  # with the restart file of the end of the stage before, which stays good
+            _, err = self.talus("resume", "stack.h5", code=2)
+            self.assertRegex(err, r"run\.time_step: .*stable step")
+            self.assertEqual(self.attribute("stack.h5", "frames"), frames)
 
     def test_faults_of_the_command_line(self):
         self.write("slope.yaml", INCLINE)
