@@ -134,7 +134,7 @@ void print_cost(Simulation& simulation) {
 }
 
 void write_geometry(const std::string& path, Simulation& simulation) {
-    Recorder recorder(choose_output_path(path, true), simulation, std::vector<std::string>{});
+    Recorder recorder(path, simulation, std::vector<std::string>{});
     recorder.write_frame(simulation, with_all_touching_faces(simulation));
     recorder.close("checked");
 }
@@ -156,8 +156,12 @@ int check_command(const CheckArguments& arguments) {
     Simulation simulation(scenario, build(scenario));
     simulation.begin_stage();
     check_probes(simulation);
-    if (!arguments.geometry.empty()) write_geometry(arguments.geometry, simulation);
     std::printf("%s\n", scenario.title.c_str());
+    if (!arguments.geometry.empty()) {
+        const std::string path = choose_output_path(arguments.geometry, arguments.force);
+        write_geometry(path, simulation);
+        std::printf("geometry       %s\n", path.c_str());
+    }
     print_blocks(simulation);
     print_cut(simulation.report());
     print_joints(simulation);

@@ -21,7 +21,7 @@ int resume_command(const std::string& results, int threads);
 struct CheckArguments {
     std::string scenario, geometry;
     std::vector<std::string> overrides;
-    bool resolved = false, schema = false;
+    bool resolved = false, schema = false, force = false;
 };
 int check_command(const CheckArguments& arguments);
 

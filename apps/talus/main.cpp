@@ -52,6 +52,7 @@ int main(int argc, char** argv) {
     check_app->add_flag("--resolved", check.resolved,
                         "print the scenario with every default as canonical JSON, nothing else");
     check_app->add_option("--geometry", check.geometry, "write the blocks as a result file with one frame, for a picture");
+    check_app->add_flag("--force", check.force, "replace an existing file instead of choosing a numbered name");
     check_app->add_flag("--schema", check.schema, "print the JSON Schema of scenario files, for editors");
     add_overrides(*check_app, check.overrides);
     check_app->callback([&] { command = [&] { return check_command(check); }; });

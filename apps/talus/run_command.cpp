@@ -90,6 +90,8 @@ int carry_out(Simulation& simulation, Recorder& recorder, Watch* watch, Entry en
         std::fflush(stdout);
     };
     options.progress = [&](const Simulation& s) { progress(s); };
+    std::string unsettled;
+    options.out_of_time = [&](const Simulation& s) { unsettled += out_of_time(s) + "\n"; };
     options.interrupted = [] { return asked_to_stop.load(); };
     if (entry == Entry::resumed) progress.stage_begun(simulation);
 
@@ -100,6 +102,12 @@ int carry_out(Simulation& simulation, Recorder& recorder, Watch* watch, Entry en
         progress.done();
         recorder.finish(simulation, "diverged", clock.seconds());
         std::printf("results up to the last good frame: %s\n", recorder.path().c_str());
+        throw;
+    } catch (const InputError&) {
+        progress.done();
+        recorder.finish(simulation, "refused", clock.seconds());
+        std::printf("stage %s cannot begin; results up to its start: %s\n", simulation.stage().name.c_str(),
+                    recorder.path().c_str());
         throw;
     } catch (const OutputError&) {
         progress.done();
@@ -120,12 +128,8 @@ int carry_out(Simulation& simulation, Recorder& recorder, Watch* watch, Entry en
     }
     int failed = 0;
     if (watch) failed = print_verdicts(watch->judge(), "  ");
-    if (outcome == Outcome::no_equilibrium) {
-        std::printf("a stage that was to end in equilibrium ran out of time: unbalanced ratio %.2g\n",
-                    unbalanced_ratio(simulation.model(), simulation.state()));
-        return not_met;
-    }
-    return failed > 0 ? not_met : ok;
+    std::printf("%s", unsettled.c_str());
+    return failed > 0 || outcome == Outcome::no_equilibrium ? not_met : ok;
 }
 
 std::string default_output(const std::string& scenario) { return std::filesystem::path(scenario).stem().string() + ".h5"; }
@@ -149,6 +153,9 @@ int run_command(const RunArguments& arguments) {
 }
 
 int resume_command(const std::string& results, int threads) {
+    if (!std::filesystem::exists(restart_path(results)))
+        throw InputError(restart_path(results) + ": is not there; a run goes on from this file, which it left beside its " +
+                         "results: bring it back, or run the scenario again");
     const RestartInfo info = read_restart_info(restart_path(results));
     Scenario scenario = read_noted(info);
     if (scenario.hash != info.scenario_hash)

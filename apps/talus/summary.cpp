@@ -78,6 +78,11 @@ void print_energy(const Simulation& simulation) {
                 number(e.gravity, "J").c_str());
     std::printf("  energy drift   %.2g of the largest of them; ledger closes to %.1g\n",
                 simulation.energy_drift() / turned_over, std::abs(simulation.ledger_error()) / turned_over);
+    if (simulation.energy_gain() > energy_alarm)
+        std::printf(
+            "  WARNING: blocks gained energy from nowhere, %.2g of the largest energy of the run: do not trust these "
+            "results; a shorter step (run.time_step, run.step_fraction) or contact damping is the remedy\n",
+            simulation.energy_gain());
 }
 
 void print_timing(const Simulation& simulation, double wall_time) {
@@ -98,6 +103,13 @@ std::string number(double value, const char* unit) {
     char text[48];
     std::snprintf(text, sizeof text, *unit ? "%.4g %s" : "%.4g", value, unit);
     return text;
+}
+
+std::string out_of_time(const Simulation& simulation) {
+    const StageSpec& stage = simulation.stage();
+    return "stage " + stage.name + " did not come to equilibrium in its " + number(*stage.until.time, "s") +
+           ": unbalanced ratio " + number(unbalanced_ratio(simulation.model(), simulation.state())) + ", not below " +
+           number(*stage.until.equilibrium);
 }
 
 void print_stage(const Simulation& simulation) {

@@ -12,6 +12,8 @@ namespace talus::cli {
 /// "1.23e6 J", "0.5 mm": a number with four digits and its unit.
 std::string number(double value, const char* unit = "");
 
+/// What to say at the end of a stage that was to end in equilibrium and did not.
+std::string out_of_time(const Simulation& simulation);
 void print_stage(const Simulation& simulation);
 void print_summary(const Simulation& simulation, double wall_time);
 /// One line each; returns how many failed.

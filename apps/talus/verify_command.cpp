@@ -35,7 +35,8 @@ void verify_case(const std::string& file, const Case& row, Tally& tally) {
         Watch watch(row.scenario.expect, simulation.model(), simulation.first_state());
         RunOptions options;
         options.watch = &watch;
-        if (run(simulation, options) == Outcome::no_equilibrium) trouble = "equilibrium not reached";
+        options.out_of_time = [&](const Simulation& s) { trouble = out_of_time(s); };
+        run(simulation, options);
         verdicts = watch.judge();
     } catch (const DivergenceError& error) {
         trouble = std::string("diverged: ") + error.what();

@@ -26,6 +26,7 @@ Stiffness largest_stiffness(const Model& model) {
         most.kn[b] = std::max(most.kn[b], model.joints[joint].kn);
         most.ks[b] = std::max(most.ks[b], model.joints[joint].ks);
     };
+    if (model.joints.empty()) return most;  // one block needs none
     std::vector<bool> present(nm, false);
     for (int m : model.blocks.material) present[m] = true;
     for (BlockId b = 0; b < nb; ++b)

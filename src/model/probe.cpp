@@ -15,7 +15,7 @@ namespace {
 using Reading = std::function<double(const Model&, const State&, const Gauges&)>;
 
 [[noreturn]] void refuse(const ProbeSpec& spec, const std::string& message) {
-    throw InputError({Fault{spec.where, spec.quantity, message}});
+    throw InputError({Fault{spec.where, spec.key, message}});
 }
 
 // ---- a material point ----------------------------------------------------------------------------------------------

@@ -70,7 +70,7 @@ bool contains(const Model& model, BlockId block, const Vec2& arm, double toleran
 std::vector<BlockId> select(const Model& model, const State& state, const Selector& selector) {
     std::vector<BlockId> found = matching(model, selector);
     std::erase_if(found, [&](BlockId b) { return state.removed[b] != 0; });
-    if (found.empty()) throw InputError({Fault{selector.where, {}, text(selector, model.origin)}});
+    if (found.empty()) throw InputError({Fault{selector.where, selector.key, text(selector, model.origin)}});
     return found;
 }
 

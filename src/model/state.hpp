@@ -67,6 +67,8 @@ struct Ledger {
     double friction = 0.0;                                                                // dissipated by slip, >= 0
     double contact_damping = 0.0;                                                         // dissipated by dashpots, >= 0
     double released = 0.0;  // elastic shear energy given up when contacts shrink or break, >= 0
+    double gained = 0.0;    // most that ever was there beyond what can be explained, see Simulation::energy_gain
+    double largest = 0.0;   // largest energy against which that is judged
 };
 
 struct State {
@@ -87,6 +89,7 @@ struct State {
     std::vector<Vec2> start_position;   // [nb] m, position and angle from which displacements count
     std::vector<double> start_angle;    // [nb] rad
     Ledger ledger;
+    double earlier_gain = 0.0;  // energy_gain before the last reset
 };
 
 }  // namespace talus

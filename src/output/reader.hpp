@@ -25,7 +25,7 @@ public:
     std::string canonical_json() const;
     std::vector<std::string> overrides() const;
     std::vector<std::pair<std::string, std::string>> attributes() const;  // name and value of /talus, as text, sorted
-    std::string status() const;  // in progress (or killed) | complete | interrupted | diverged | stopped
+    std::string status() const;  // in progress (or killed) | complete | interrupted | diverged | stopped | refused
 
     std::int64_t frames() const { return frames_; }
     std::int64_t blocks() const;

@@ -16,11 +16,12 @@ namespace {
 /// Breaks the build when a member is added that `transfer` does not know.
 [[maybe_unused]] void every_member_is_transferred(const State& state, const Contact& contact) {
     [[maybe_unused]] const auto& [time, stage_time, calm, step, total_steps, stage, stage_step, halvings, motion, load,
-                                  damping, contacts, removed, release, start_position, start_angle, ledger] = state;
+                                  damping, contacts, removed, release, start_position, start_angle, ledger, earlier_gain] =
+        state;
     [[maybe_unused]] const auto& [position, angle, velocity, spin] = motion;
     [[maybe_unused]] const auto& [list, reaction, broken] = contacts;
     [[maybe_unused]] const auto& [total0, kinetic0, gravity, loads, work, local_damping, driven, friction, contact_damping,
-                                  released] = ledger;
+                                  released, gained, largest] = ledger;
     [[maybe_unused]] const auto& [part_a, part_b, joint, face, edge_a, edge_b, touching, slipped, sliding, alive, length,
                                   overlap, normal_force, shear_force, shear_energy, strength, slip, slip_sum, dilation,
                                   point, normal] = contact;
@@ -190,6 +191,9 @@ void transfer(Archive& to, AnyState& state) {
     to.one("ledger/friction", "J", state.ledger.friction);
     to.one("ledger/contact_damping", "J", state.ledger.contact_damping);
     to.one("ledger/released", "J", state.ledger.released);
+    to.one("ledger/gained", "J", state.ledger.gained);
+    to.one("ledger/largest", "J", state.ledger.largest);
+    to.one("earlier_gain", "1", state.earlier_gain);
 }
 
 State with_contacts_alive(const State& state) {

@@ -165,6 +165,7 @@ void ResultsWriter::finish(const RunSummary& summary) {
     file_.set("/talus", "wall_time", summary.wall_time);
     file_.set("/talus", "steps", summary.steps);
     file_.set("/talus", "end_time", summary.end_time);
+    file_.set("/talus", "energy_gain", summary.energy_gain);
     file_.flush();
 }
 

@@ -31,10 +31,11 @@ struct RunInfo {  // provenance: enough to run the same again
 };
 
 struct RunSummary {
-    std::string status;      // complete | interrupted | diverged | stopped
+    std::string status;      // complete | interrupted | diverged | stopped | refused
     double wall_time = 0.0;  // s
     std::int64_t steps = 0;
-    double end_time = 0.0;  // s
+    double end_time = 0.0;     // s
+    double energy_gain = 0.0;  // 1
 };
 
 struct HistoryColumn {

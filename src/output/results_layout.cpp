@@ -49,6 +49,7 @@ void write_provenance(h5::File& file, const Model& model, const RunInfo& info) {
     file.set("/talus", "wall_time", 0.0);
     file.set("/talus", "steps", std::int64_t{0});
     file.set("/talus", "end_time", 0.0);
+    file.set("/talus", "energy_gain", 0.0);
     file.write_text("/talus/scenario", info.scenario_text);
     file.write_text("/talus/canonical_json", info.canonical_json);
     file.write_texts("/talus/overrides", info.overrides, "overrides");

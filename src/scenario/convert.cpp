@@ -90,6 +90,7 @@ std::string convert_block_name(const Cursor& name) {
 Selector convert_selector(const Cursor& at) {
     Selector selector;
     selector.where = at.where();
+    selector.key = at.path();
     if (at.is(Value::Kind::text)) {
         selector.block = convert_block_name(at);
     } else if (at.is(Value::Kind::list)) {

@@ -49,7 +49,12 @@ ProbeSpec probe_at(const Cursor& at, const std::string& quantity, const std::str
     probe.point = at["point"].maybe_point();
     probe.joint = at["joint"].maybe_point();
     if (at["block"].given()) probe.block = convert_block_name(at["block"]);
-    probe.where = at.where();
+    const Cursor place = at["point"].given()   ? at["point"]
+                         : at["joint"].given() ? at["joint"]
+                         : at["block"].given() ? at["block"]
+                                               : at;
+    probe.where = place.where();
+    probe.key = place.path();
     return probe;
 }
 
@@ -180,7 +185,6 @@ RecordSpec convert_record(const Cursor& at) {
             history["name"].fault("a history of this name is there already");
     }
     record.contacts = at["contacts"].yes();
-    record.settling = at["settling"].yes();
     return record;
 }
 

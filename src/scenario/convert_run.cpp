@@ -54,6 +54,7 @@ StageSpec convert_stage(const Cursor& at, Value& joints) {
     stage.until = convert_until(at["until"]);
     stage.damping = convert_damping(at["damping"]);
     stage.time_step = at["time_step"].maybe_number();
+    stage.time_step_where = at["time_step"].where();
     if (stage.release > 0.0 && stage.remove.empty())
         at["release"].fault("there is nothing to release: the stage deletes no blocks");
     return stage;
@@ -77,6 +78,7 @@ RunSpec convert_run(const Cursor& at) {
     run.until = convert_until(at["until"]);
     run.solver = at["solver"].text();
     run.time_step = at["time_step"].maybe_number();
+    run.time_step_where = at["time_step"].where();
     run.step_fraction = at["step_fraction"].number();
     run.unchecked = at["unchecked"].yes();
     run.damping = convert_damping(at["damping"]);

@@ -85,6 +85,25 @@ Scenario convert_with_origin(const Input& input, Value& checked, std::vector<Fau
     return scenario;
 }
 
+/// It must end: by `run.until`, or with the last stage. Then nothing of `run` holds that belongs to a stage.
+void check_end(const Scenario& scenario, const Value& checked, const std::string& file, std::vector<Fault>& faults) {
+    const RunSpec& run = scenario.run;
+    const auto said = [](const Fault& fault) { return fault.key == "run" || fault.key.starts_with("run."); };
+    if (run.until.time || run.until.equilibrium || std::any_of(faults.begin(), faults.end(), said)) return;
+    const Value* at = checked.find("run");
+    const auto fault = [&](const std::string& key, const std::string& message) {
+        const Value* value = at ? at->find(key) : nullptr;
+        faults.push_back({place_of(file, value ? value->line : at ? at->line : checked.line), "run." + key, message});
+    };
+    const std::string goes_with = "goes with run.until: without it the last of `stages` is the end";
+    if (scenario.stages.empty())
+        fault("until", "is missing: when the run ends");
+    else if (run.time_step)
+        fault("time_step", goes_with);
+    else if (run.damping.local != 0.0 || run.damping.contact != 0.0)
+        fault("damping", goes_with);
+}
+
 /// One scenario from the tree as it was read.
 Scenario make_scenario(const Input& input, Value tree, std::vector<Fault>& faults) {
     fill_derived_defaults(tree);
@@ -92,6 +111,7 @@ Scenario make_scenario(const Input& input, Value tree, std::vector<Fault>& fault
     if (!checked.is(Value::Kind::map)) return {};
     checked.erase("cases");
     Scenario scenario = convert_with_origin(input, checked, faults);
+    check_end(scenario, checked, input.file, faults);
     scenario.text = input.text;
     scenario.canonical_json = to_json(checked);
     scenario.hash = fnv1a(scenario.canonical_json);

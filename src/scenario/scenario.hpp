@@ -141,6 +141,7 @@ struct Selector {
     std::optional<Vec2> at;
     Polygon inside;
     Where where;
+    std::string key;  // path in the file
 };
 
 struct LoadSpec {
@@ -184,8 +185,9 @@ struct RunSpec {
     Until until;
     std::string solver = "auto";      // auto | explicit
     std::optional<double> time_step;  // s; absent: auto
-    double step_fraction = 0.8;       // of the rigorous bound, when automatic
-    bool unchecked = false;           // accept a time step above the stable estimate
+    Where time_step_where;
+    double step_fraction = 0.8;  // of the rigorous bound, when automatic
+    bool unchecked = false;      // accept a time step above the stable estimate
     DampingSpec damping;
     std::string search = "isu";
     std::optional<double> skin;  // m; absent: automatic
@@ -206,6 +208,7 @@ struct StageSpec {  // in order, before `run`
     Until until;
     DampingSpec damping;
     std::optional<double> time_step;
+    Where time_step_where;
 };
 
 /// A number observed while a run goes on. What it may be: docs/scenario-reference.md, table of quantities.
@@ -217,6 +220,7 @@ struct ProbeSpec {
     std::optional<Vec2> joint;  // the contact or joint face nearest to this place at the start
     std::string block;
     Where where;
+    std::string key;  // path in the file of what says the place
 };
 
 struct HistorySpec {
@@ -229,8 +233,7 @@ struct RecordSpec {
     std::optional<double> frame_every;  // s
     std::optional<int> frame_count;     // frames after the first one; default 50
     std::vector<HistorySpec> history;
-    bool contacts = true;   // write the contacts of every frame
-    bool settling = false;  // also record stages that end in a reset
+    bool contacts = true;  // write the contacts of every frame
 };
 
 struct ExpectSpec {

@@ -148,7 +148,7 @@ Shape whole() {
         table("material", "What blocks are made of.", {{"density", number("kg/m3", positive), required, "mass per volume"}},
               {}, {"young", "poisson", "thermal_expansion"});
     return table(
-        "scenario", "The whole file. Only `run`, and one of `rock` and `blocks`, must be there.",
+        "scenario", "The whole file. One of `rock` and `blocks` must be there, and `run.until` or `stages`.",
         {{"title", text(), fallback("\"\""), "one line for people"},
          {"source", text(), fallback("\"\""), "where the case and its expected values come from"},
          {"origin", either({choice({"auto"}), point()}), fallback("auto"),
@@ -163,7 +163,7 @@ Shape whole() {
          {"loads", list_of(load()), fallback("[]"), "forces on blocks, from the start"},
          {"initial_stress", initial_stress(), optional, "stress in the joints before anything moves"},
          {"stages", list_of(stage()), fallback("[]"), "what happens before `run`, in this order"},
-         {"run", run(), required, "the last stage, and how to compute"},
+         {"run", run(), fallback("{}"), "the last stage, and how to compute"},
          {"record", record(), fallback("{}"), "what goes into the results file"},
          {"expect", list_of(expectation()), fallback("[]"), "what must come out"},
          {"cases", list_of(cases()), optional, "variants of the scenario, each with its own expectations"}},

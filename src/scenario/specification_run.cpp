@@ -90,7 +90,8 @@ Shape stage() {
 Shape run() {
     return table(
         "run", "The last stage, and how to compute. `search`, `skin` and `threads` never change a result.",
-        {{"until", until(), required, "when the run ends"},
+        {{"until", until(), optional,
+          "when the run ends; must be given unless there are stages, of which the last is then the end"},
          {"solver", choice({"auto", "explicit"}, {"rigid", "static"}), fallback("auto"), "how motion is integrated"},
          {"time_step", time_step(), fallback("auto"), "automatic: a share of the rigorous bound"},
          {"step_fraction", number("1", positive), fallback("0.8"), "share of the rigorous bound in an automatic step"},
@@ -122,8 +123,7 @@ Shape record() {
     return table("record", "What goes into the results file.",
                  {{"frames", frames, fallback("{}"), "pictures of the whole state"},
                   {"history", list_of(history), fallback("[]"), "numbers along the run"},
-                  {"contacts", boolean(), fallback("true"), "write the contacts of every frame"},
-                  {"settling", boolean(), fallback("false"), "also record stages that end in a reset"}});
+                  {"contacts", boolean(), fallback("true"), "write the contacts of every frame"}});
 }
 
 Shape expectation() {

@@ -148,6 +148,7 @@ void Recorder::after_step(const Simulation& simulation) {
 
 void Recorder::end_stage(const Simulation& simulation) {
     if (simulation.recorded() && last_frame_time_ < simulation.state().time) frame_and_restart(simulation);
+    if (simulation.state().stage + 1 < simulation.stage_count()) save_restart(simulation);  // the next one may be refused
 }
 
 void Recorder::save_restart(const Simulation& simulation) {
@@ -160,11 +161,11 @@ void Recorder::save_restart(const Simulation& simulation) {
 }
 
 void Recorder::finish(const Simulation& simulation, const std::string& status, double wall_time) {
-    if (status != "diverged") save_restart(simulation);
-    writer_.finish({status, wall_time, simulation.state().total_steps, simulation.state().time});
+    if (status != "diverged" && status != "refused") save_restart(simulation);
+    writer_.finish({status, wall_time, simulation.state().total_steps, simulation.state().time, simulation.energy_gain()});
 }
 
-void Recorder::close(const std::string& status) { writer_.finish({status, 0.0, 0, 0.0}); }
+void Recorder::close(const std::string& status) { writer_.finish({status, 0.0, 0, 0.0, 0.0}); }
 
 std::string Recorder::restart_file() const { return restart_path(path()); }
 
@@ -182,7 +183,7 @@ void check_probes(const Simulation& simulation) {
             make_probe(probe, simulation.model(), simulation.first_state());
         } catch (const InputError& error) {
             const Fault& found = error.faults().front();  // a history reads several quantities at one place: said once
-            if (faults.empty() || faults.back().where.line != found.where.line || faults.back().message != found.message)
+            if (faults.empty() || faults.back().key != found.key || faults.back().message != found.message)
                 faults.push_back(found);
         }
     }
@@ -211,7 +212,10 @@ Outcome run(Simulation& simulation, const RunOptions& options) {
             if (options.progress) options.progress(simulation);
         }
         if (options.recorder) options.recorder->end_stage(simulation);
-        settled = settled && (!simulation.stage().until.equilibrium || simulation.reached_equilibrium());
+        if (simulation.stage().until.equilibrium && !simulation.reached_equilibrium()) {
+            settled = false;
+            if (options.out_of_time) options.out_of_time(simulation);
+        }
         if (!simulation.end_stage()) break;
     }
     return settled ? Outcome::complete : Outcome::no_equilibrium;

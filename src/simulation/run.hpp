@@ -23,12 +23,13 @@ public:
     /// Goes on after a restart point.
     Recorder(const std::string& path, const Simulation& simulation, const RestartInfo& info);
 
-    void begin_stage(const Simulation& simulation);                      // a frame if the clock has just been set
-    void after_step(const Simulation& simulation);                       // what is due by now
-    void end_stage(const Simulation& simulation);                        // a frame of its end
+    void begin_stage(const Simulation& simulation);  // a frame if the clock has just been set
+    void after_step(const Simulation& simulation);   // what is due by now
+    void end_stage(const Simulation& simulation);    // a frame of its end, and a restart file between stages
     void write_frame(const Simulation& simulation, const State& state);  // now, due or not
     void save_restart(const Simulation& simulation);
     void close(const std::string& status);  // without a restart file
+    /// With a restart file of this moment, unless the run diverged or a stage was refused: then the one before stays.
     void finish(const Simulation& simulation, const std::string& status, double wall_time);
 
     std::int64_t frames() const { return writer_.frames(); }
@@ -69,12 +70,15 @@ struct RunOptions {
     Watch* watch = nullptr;                              // none: expectations are not judged
     std::function<void(const Simulation&)> stage_begun;  // after its step is chosen
     std::function<void(const Simulation&)> progress;     // called every step; cheap
-    std::function<bool()> interrupted;                   // asked every step
+    /// A stage that was to end in equilibrium has run out of time; called at its very end, and the run goes on.
+    std::function<void(const Simulation&)> out_of_time;
+    std::function<bool()> interrupted;  // asked every step
     Entry entry = Entry::fresh;
 };
 
 /// Runs to the end of the last stage. `no_equilibrium`: a stage that was to end in equilibrium ran out of time.
-/// Throws DivergenceError, after a last look at everything worth keeping: the good frames stay.
+/// Throws DivergenceError, after a last look at everything worth keeping: the good frames stay. Throws InputError if a stage
+/// cannot begin; the restart file is then that of the end of the one before.
 Outcome run(Simulation& simulation, const RunOptions& options);
 
 }  // namespace talus

@@ -9,13 +9,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 #include <utility>
 
 namespace talus {
 namespace {
 
-constexpr int calm_interval = 10;  // steps between looks at the unbalanced ratio
-constexpr int calm_needed = 3;     // looks in a row below the limit: one may be a turning point of the motion
+constexpr int calm_interval = 10;     // steps between looks at the unbalanced ratio
+constexpr int energy_interval = 100;  // steps between looks at the energy: hardly costs, and an instability takes as many
+constexpr int calm_needed = 3;        // looks in a row below the limit: one may be a turning point of the motion
 
 StageSpec last_stage(const Scenario& scenario) {
     StageSpec stage;
@@ -23,6 +25,7 @@ StageSpec last_stage(const Scenario& scenario) {
     stage.until = scenario.run.until;
     stage.damping = scenario.run.damping;
     stage.time_step = scenario.run.time_step;
+    stage.time_step_where = scenario.run.time_step_where;
     return stage;
 }
 
@@ -37,6 +40,19 @@ double default_skin(const Model& model) {
 }
 
 VectorTable frozen(const VectorTable& table) { return {table.x.frozen(), table.y.frozen()}; }
+
+void change_joints(const StageSpec& stage, Model& model) {
+    for (const JointSpec& joint : stage.joints)
+        for (Joint& mine : model.joints)
+            if (mine.name == joint.name) mine = make_joint(joint);
+}
+
+std::string refusal(const StableStep& stable) {
+    std::ostringstream text;
+    text << "is above the stable step, estimated at " << stable.estimate << " s (rigorous bound " << stable.bound
+         << " s); leave it out, or set run.unchecked: true to see what happens";
+    return text.str();
+}
 
 std::vector<StageSpec> stages_of(const Scenario& scenario) {
     std::vector<StageSpec> stages = scenario.stages;
@@ -60,8 +76,8 @@ Simulation::Simulation(const Scenario& scenario, Scene scene)
     omp_set_num_threads(scenario.run.threads);
 #endif
     boundary_loads_.assign(model_.loads.begin(), model_.loads.begin() + model_.boundary_loads);
-    for (int i = 0; i < stage_count(); ++i)
-        if (stages_[i].reset) first_recorded_ = std::min(i + 1, stage_count() - 1);
+    for (int i = 0; i + 1 < stage_count(); ++i)
+        if (stages_[i].reset) first_recorded_ = i + 1;
 }
 
 Simulation::Simulation(const Scenario& scenario, Scene scene, State saved) : Simulation(scenario, std::move(scene)) {
@@ -94,6 +110,9 @@ void Simulation::step() {
     ++steps_done_;
     check_speed();
     state_.step_halvings = step_halvings(state_.stage_step, state_.step_halvings, speed_, stable_.thinnest);
+    const double whole = std::ldexp(state_.stage_step, -state_.step_halvings) * (1.0 - 1e-6);
+    // Not after a step that was cut: what leapfrog keeps is another sum for each length of step.
+    if (dt >= whole && (state_.total_steps % energy_interval == 0 || time_step() < whole)) check_energy();
     lap(Part::move);
 }
 
@@ -122,6 +141,27 @@ void Simulation::check_speed() const {
                               "; the step is too long for the stiffness, or loads grow without bound: leave "
                               "run.time_step out, or look at the last frame");
     }
+}
+
+// K - (dt^2/8) F M^-1 F + stored + dissipated - work is what kick-drift-kick keeps exactly while contacts are linear
+// springs. The sum of energies itself swings by the term with F, by more than the energy there is when the step is near its
+// limit. Dashpots count with half of what is booked: in the step in which a contact begins, their force acts at its end
+// only.
+void Simulation::check_energy() {
+    const Energies e = energies();
+    Ledger& ledger = state_.ledger;
+    const double there = ledger.total0 + e.gravity + e.loads + e.driven;
+    ledger.largest = std::max({ledger.largest, there, std::abs(e.gravity), std::abs(e.loads), std::abs(e.driven)});
+    const double dt = std::ldexp(state_.stage_step, -state_.step_halvings);
+    const double swing = e.kinetic - kinetic_energy_of_ledger(model_, state_, dt);
+    const double gained = e.total() - ledger.total0 - swing - 0.5 * e.contact_damping;
+    ledger.gained = std::max(ledger.gained, gained);
+    if (gained <= energy_explosion * ledger.largest) return;
+    std::ostringstream text;
+    text << "blocks gained " << gained << " J from nowhere, the largest energy of the run is " << ledger.largest
+         << " J: t = " << state_.time << " s, step " << state_.total_steps << " of " << state_.stage_step
+         << " s (limit estimated at " << stable_.estimate << " s): leave the time step out, or look at the last frames";
+    throw DivergenceError(text.str());
 }
 
 double Simulation::recorded_time() const {
@@ -188,10 +228,7 @@ void Simulation::drop_scratch() {
 
 void Simulation::apply_stage() {
     const bool last = state_.stage + 1 == stage_count();
-    for (int i = 0; i <= state_.stage; ++i)
-        for (const JointSpec& joint : stages_[i].joints)
-            for (Joint& mine : model_.joints)
-                if (mine.name == joint.name) mine = make_joint(joint);
+    for (int i = 0; i <= state_.stage; ++i) change_joints(stages_[i], model_);
     model_.local_damping = stage().damping.local;
     model_.contact_damping = stage().damping.contact;
     model_.release_time = stage().release;
@@ -239,6 +276,35 @@ void Simulation::delete_blocks() {
     boxed_position_.clear();
 }
 
+// Of stages to come as much as can be known before the first step: with the blocks, joints and damping that they will have,
+// but with the contacts of now. Each is looked at again, with its own contacts, when it begins.
+void Simulation::check_stages() const {
+    const int end = state_.total_steps == 0 ? stage_count() : state_.stage + 1;
+    Model model = model_;
+    State state = state_;
+    std::vector<Fault> faults;
+    for (int i = state_.stage; i < end; ++i) {
+        const StageSpec& at = stages_[i];
+        if (i > state_.stage) {
+            for (const Selector& selector : at.remove)
+                for (BlockId b : select(model, state, selector)) state.removed[b] = 1;
+            make_loads(model, state, at.loads_given ? at.loads : scenario_.loads);  // throws if a block is not there
+            std::erase_if(state.contacts.list, [&](const Contact& c) {
+                return state.removed[model.parts.block[c.part_a]] || state.removed[model.parts.block[c.part_b]];
+            });
+        }
+        change_joints(at, model);
+        model.contact_damping = at.damping.contact;
+        if (!at.time_step || scenario_.run.unchecked) continue;
+        const StableStep stable = stable_step(model, placed_, state);
+        const bool listed = i < static_cast<int>(scenario_.stages.size());
+        if (*at.time_step > stable.estimate)
+            faults.push_back({at.time_step_where, (listed ? "stages[" + std::to_string(i) + "]" : "run") + ".time_step",
+                              refusal(stable)});
+    }
+    if (!faults.empty()) throw InputError(std::move(faults));
+}
+
 void Simulation::begin_stage() {
     // What a stage changes (blocks deleted, stiffness) is no drift of the integration.
     const double drift = state_.step > 0 ? energy_drift() : 0.0;
@@ -258,14 +324,9 @@ void Simulation::begin_stage() {
     update_forces(0.0);
 
     stable_ = stable_step(model_, placed_, state_);
+    check_stages();
     const StageSpec& now = stage();
     if (now.time_step) {
-        if (*now.time_step > stable_.estimate && !scenario_.run.unchecked)
-            throw InputError({Fault{{scenario_.file, 0},
-                                    now.name + ".time_step",
-                                    "is above the stable step, estimated at " + std::to_string(stable_.estimate) +
-                                        " s (rigorous bound " + std::to_string(stable_.bound) +
-                                        " s); leave it out, or set run.unchecked: true to see what happens"}});
         state_.stage_step = *now.time_step;
     } else {
         double dt = scenario_.run.step_fraction * stable_.bound;
@@ -279,7 +340,9 @@ void Simulation::begin_stage() {
 }
 
 bool Simulation::end_stage() {
+    if (state_.stage + 1 == stage_count()) return false;  // a reset prepares what follows; here nothing does
     if (stage().reset) {
+        state_.earlier_gain = energy_gain();
         const int nb = model_.blocks.size();
         for (BlockId b = 0; b < nb; ++b) {
             if (model_.blocks.held(b)) continue;
@@ -294,7 +357,6 @@ bool Simulation::end_stage() {
         for (Contact& c : state_.contacts.list)
             if (c.dilation == 0.0) c.slip = c.slip_sum = 0.0;
     }
-    if (state_.stage + 1 == stage_count()) return false;
     ++state_.stage;
     return true;
 }
@@ -325,6 +387,11 @@ Energies Simulation::energies() const {
     e.loads = l.loads;
     e.driven = l.driven;
     return e;
+}
+
+double Simulation::energy_gain() const {
+    const Ledger& ledger = state_.ledger;
+    return std::max(state_.earlier_gain, ledger.gained > 0.0 ? ledger.gained / ledger.largest : 0.0);
 }
 
 double Simulation::ledger_error() const { return talus::ledger_error(model_, state_, state_.stage_step); }

@@ -5,7 +5,7 @@ import re
 import stat
 import unittest
 
-from program import INCLINE, SLOPE, Program, main
+from program import INCLINE, SLOPE, STACK, Program, main
 
 
 def line_of(text, part):
@@ -36,7 +36,9 @@ SCENARIOS = {
     "bolts": (INCLINE + "bolts: []\n", r"bolts: not available yet", "bolts"),
     "deformation": (replaced("density: 2500", "density: 2500, young: 5e10"), r"materials\.rock\.young: not available yet", "young"),
     "negative time": (replaced("time: 0.1", "time: -1"), r"run\.until\.time: ", "-1"),
-    "point outside": (replaced("point: [6.75, 4]", "point: [60, 4]"), r"no block contains the point", "[60, 4]"),
+    "point outside": (replaced("point: [6.75, 4]", "point: [60, 4]"), r"record\.history\[0\]\.point: no block contains the point", "[60, 4]"),
+    "expectation outside": (INCLINE + "expect:\n  - quantity: max_normal_stress\n    joint: [1, 1]\n    below: 1\n  - quantity: spin\n"
+                            "    point: [60, 4]\n    below: 1\n", r"expect\[1\]\.point: no block contains the point", "point: [60, 4]"),
     "no YAML": (INCLINE + "loads: [{\n", r"", None),
 }
 
@@ -70,6 +72,51 @@ class BadInput(Program):
         self.write("slope.yaml", INCLINE)
         self.talus("run", "slope.yaml")
         self.refused("run", "slope.yaml", "--set", "run.time_step=0.1", report=r"run\.time_step: .*stable step.*unchecked")
+
+    def test_a_step_that_is_too_long_for_a_later_stage_is_refused_before_anything_is_written(self):
+        # The block, 1.25 m2, alone on its longest face of 5^(1/2) m: limit about 7e-4 s; with joints 100 times as stiff 7e-5 s,
+        # with joints a hundredth as stiff 7e-3 s.
+        def stages(change, step):
+            return f"""stages:
+  - {{name: first, until: {{time: 0.01}}}}
+  - name: second
+    change: {{joints: {{base: {{{change}}}}}}}
+    until: {{time: 0.01}}
+    time_step: {step}
+"""
+        stiff, soft = "normal_stiffness: 1e12, shear_stiffness: 5e11", "normal_stiffness: 1e8, shear_stiffness: 5e7"
+        for change, step, good in ((stiff, "2e-4", False), (stiff, "2e-5", True), (soft, "2e-3", True), (soft, "2e-2", False)):
+            with self.subTest(change, step=step):
+                text = INCLINE + stages(change, step)
+                self.write("slope.yaml", text)
+                for command in ("run", "check"):
+                    if good:
+                        self.talus(command, "slope.yaml")
+                    else:
+                        self.refused(command, "slope.yaml", report=rf"^slope\.yaml:{line_of(text, 'time_step')} "
+                                                                   r"stages\[1\]\.time_step: .*stable step")
+        text = INCLINE.replace("run: {", "run: {time_step: 2e-4, ") + stages(stiff, "auto")  # a change holds in `run` too
+        self.write("slope.yaml", text)
+        self.refused("run", "slope.yaml", report=rf"^slope\.yaml:{line_of(text, 'run:')} run\.time_step: .*stable step")
+        self.write("slope.yaml", INCLINE + """stages:
+  - {until: {time: 0.01}}
+  - {until: {time: 0.01}, delete: [[60, 4]]}
+""")
+        self.refused("run", "slope.yaml", report=r"^slope\.yaml:13 stages\[1\]\.delete\[0\]: no block contains the point")
+
+    def test_a_step_that_is_found_too_long_when_its_stage_begins(self):
+        # In a chain of six, 2 / (2 (k/m)^(1/2) sin(11 pi / 26)) = 1.6285e-3 s; before they touch, each block alone says 2.5e-3 s.
+        self.write("stack.yaml", STACK + "stages: [{name: settle, damping: {local: 0.8}, until: {time: 0.1}}]\n")
+        out, err = self.talus("run", "stack.yaml", "--set", "run.unchecked=false", "--set", "run.time_step=2e-3", code=2)
+        self.assertRegex(err, r"^--set run\.time_step: .*stable step, estimated at 0\.001628")
+        self.assertIn("stage run cannot begin; results up to its start: stack.h5", out)
+        self.assertEqual(self.attribute("stack.h5", "status"), "refused")
+        self.assertAlmostEqual(float(self.attribute("stack.h5", "end_time")), 0.1)
+        frames = self.attribute("stack.h5", "frames")
+        for _ in range(2):  # with the restart file of the end of the stage before, which stays good
+            _, err = self.talus("resume", "stack.h5", code=2)
+            self.assertRegex(err, r"run\.time_step: .*stable step")
+            self.assertEqual(self.attribute("stack.h5", "frames"), frames)
 
     def test_faults_of_the_command_line(self):
         self.write("slope.yaml", INCLINE)
@@ -123,6 +170,8 @@ class BadInput(Program):
             (self.folder / name).write_bytes(good[name])
         self.refused("info", "slope.yaml", report="slope.yaml")
         self.refused("resume", "other.h5", report=r"other\.")
+        (self.folder / "slope.restart.h5").unlink()
+        self.refused("resume", "slope.h5", report=r"^slope\.restart\.h5: is not there; .*run the scenario again")
 
 
 if __name__ == "__main__":

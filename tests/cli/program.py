@@ -45,6 +45,18 @@ run: {until: {time: 1}}
 record: {history: [{name: top, point: [1, 9]}, {name: energy, quantity: energy, every: 0.01}]}
 """
 
+# Six blocks that ring under their weight, opening and closing their joints: with long steps they gain energy.
+STACK = """\
+title: Stack
+gravity: [0, -9.81]
+materials: {rock: {density: 2500}}
+joints: {joint: {normal_stiffness: 1e9, shear_stiffness: 5e8, friction_angle_deg: 30}}
+blocks:
+  - {name: base, rectangle: {corner: [-1, -1], size: [3, 1]}, held: true}
+  - {name: block, rectangle: {corner: [0, 0], size: [1, 1]}, repeat: {count: 6, step: [0, 1]}}
+run: {until: {time: 1}, unchecked: true}
+"""
+
 
 class Program(unittest.TestCase):
     """Every test runs in a folder of its own, which is gone afterwards."""

@@ -4,16 +4,27 @@ import csv
 import json
 import os
 import random
+import re
 import resource
 import shutil
 import signal
 import subprocess
 import unittest
 
-from program import INCLINE, SLOPE, TALUS, Program, interrupt, main, SOURCE
+from program import INCLINE, SLOPE, STACK, TALUS, Program, interrupt, main, SOURCE
 
 
 class Results(Program):
+    def test_one_block_needs_no_joint(self):
+        self.write("fall.yaml", """\
+gravity: [0, -10]
+materials: {rock: {density: 2500}}
+blocks: [{name: cube, rectangle: {corner: [0, 0], size: [1, 1]}}]
+run: {until: {time: 1}}
+expect: [{quantity: displacement, block: cube, component: y, value: -5, tolerance: 1e-9}]
+""")
+        self.talus("run", "fall.yaml")
+
     def test_earlier_results_are_never_lost(self):
         self.write("slope.yaml", INCLINE)
         self.talus("run", "slope.yaml")
@@ -25,6 +36,19 @@ class Results(Program):
         self.talus("run", "slope.yaml", "--force", "--set", "run.until.time=0.05")
         self.assertNotEqual((self.folder / "slope.h5").read_bytes(), first)
         self.assertFalse((self.folder / "slope-3.h5").exists())
+
+    def test_check_replaces_no_file_either(self):
+        self.write("slope.yaml", INCLINE)
+        self.talus("run", "slope.yaml")
+        before = self.files()
+        out, _ = self.talus("check", "slope.yaml", "--geometry", "slope.h5")
+        self.assertRegex(out, r"geometry +slope-2\.h5")
+        after = self.files()
+        self.assertEqual(after.keys() - before.keys(), {"slope-2.h5"})
+        self.assertEqual({name: after[name] for name in before}, before)  # results and restart file
+        self.assertIn("checked", self.talus("info", "slope-2.h5")[0])
+        self.talus("check", "slope.yaml", "--geometry", "slope.h5", "--force")
+        self.assertIn("checked", self.talus("info", "slope.h5")[0])
 
     def test_set_and_case_change_the_scenario_and_are_noted(self):
         self.write("slope.yaml", INCLINE + """\
@@ -69,6 +93,17 @@ cases:
         with open(self.folder / "tables/energies.csv") as file:
             self.assertEqual(len(list(csv.reader(file))), 52)  # a header, the start and 50 frames
 
+    def test_a_run_may_end_with_its_last_stage(self):
+        scene = INCLINE.replace("run: {until: {time: 0.1}}", "run: {}")
+        self.write("a.yaml", scene + "stages: [{name: slide, until: {time: 0.1}}]\n")
+        self.write("b.yaml", INCLINE)
+        self.write("c.yaml", scene + "stages: [{name: slide, until: {time: 0.1}, reset: true}]\n")  # nothing to prepare
+        for name in "abc":
+            self.talus("run", f"{name}.yaml")
+        for name in "ac":
+            self.assert_same_results("b.h5", f"{name}.h5", apart_from=["/talus/canonical_json", "/talus/scenario"])
+        self.assertRegex(self.talus("check", "a.yaml")[0], r"1 stage, \d")
+
     def test_search_and_threads_leave_no_trace_in_the_results(self):
         self.write("slope.yaml", SLOPE)
         self.talus("run", "slope.yaml", "--until", "0.1", "-o", "a.h5")
@@ -96,6 +131,18 @@ class ExitCodes(Program):
         self.assertIn("equilibrium", self.talus("run", "slope.yaml", code=1)[0])
         self.assertIn("stopped", self.talus("info", "slope.h5")[0])
 
+    def test_1_with_the_ratio_of_the_stage_that_ran_out_of_time(self):
+        # Its own weight is all that acts on a block that falls: ratio 1. Without gravity, afterwards, nothing acts.
+        self.write("fall.yaml", """\
+materials: {rock: {density: 2500}}
+blocks: [{name: cube, rectangle: {corner: [0, 0], size: [1, 1]}}]
+stages: [{name: fall, gravity: [0, -10], until: {time: 0.01, equilibrium: 1e-3}}]
+run: {until: {time: 0.01}}
+""")
+        out, _ = self.talus("run", "fall.yaml", code=1)
+        self.assertRegex(out, r"unbalanced +0 of")
+        self.assertIn("stage fall did not come to equilibrium in its 0.01 s: unbalanced ratio 1, not below 0.001\n", out)
+
     def test_3_if_the_run_diverges_and_the_good_frames_stay(self):
         # A load that grows without bound: no step is short enough.
         self.write("slope.yaml", INCLINE + "loads: [{block: block, force: {time: [0.05, 0.051], x: [0, 0], y: [0, 1e300]}}]\n")
@@ -104,6 +151,22 @@ class ExitCodes(Program):
         out, _ = self.talus("info", "slope.h5")
         self.assertIn("diverged", out)
         self.assertGreaterEqual(int(self.attribute("slope.h5", "frames").split(",")[0]), 25)
+
+    def test_3_if_the_step_makes_energy_and_the_frames_before_stay(self):
+        self.write("stack.yaml", STACK)
+        _, err = self.talus("run", "stack.yaml", "--set", "run.time_step=3e-3", "--set", "record.frames.every=0.02", code=3)
+        self.assertIn("from nowhere", err)
+        self.assertIn("diverged", self.talus("info", "stack.h5")[0])
+        self.assertGreaterEqual(int(self.attribute("stack.h5", "frames").split(",")[0]), 4)
+        self.assertGreater(float(self.attribute("stack.h5", "energy_gain")), 10)
+
+    def test_a_warning_if_energy_is_gained_also_before_the_last_reset(self):
+        stages = "stages: [{name: ring, time_step: %s, until: {time: 1}, reset: true}]\n"
+        for step, gained in (("1.1e-3", True), ("1e-4", False)):
+            self.write("stack.yaml", STACK + stages % step)
+            out, _ = self.talus("run", "stack.yaml", "-o", "stack.h5", "--force", "--set", "run.time_step=1e-4", "--until", "0.01")
+            self.assertEqual("WARNING" in out, gained, out)
+            self.assertEqual(float(self.attribute("stack.h5", "energy_gain")) > 0.05, gained)
 
     def test_4_if_the_file_may_not_grow_and_what_is_complete_stays(self):
         self.write("slope.yaml", SLOPE)

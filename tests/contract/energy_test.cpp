@@ -1,11 +1,13 @@
 // Energy, three statements: the work ledger closes, friction never adds energy, and what is left is the oscillation of the
 // leapfrog, second order in the step.
 #include "contact/contacts.hpp"
+#include "core/errors.hpp"
 #include "support/catch.hpp"
 #include "support/whole_run.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -250,4 +252,53 @@ run: {until: {time: 1.5}}
     CAPTURE(a, b, c);
     CHECK(std::log2(a / b) == Approx(2.0).epsilon(0.1));
     CHECK(std::log2(b / c) == Approx(2.0).epsilon(0.1));
+}
+
+TEST_CASE("just below the limit of stability the energy swings widely, and none of that counts as gained") {
+    // One block on a bonded face moves up and down as a spring: limit 2 / omega, omega^2 = kn L / m. At 0.95 of it the sum
+    // of energies rises to 1 / (1 - 0.95^2) = 10 times that at the start where the block turns.
+    Scenario scenario = scenario_of(R"(
+materials: {rock: {density: 2500}}
+joints: {glue: {normal_stiffness: 1e9, shear_stiffness: 1e9, tension: 1e15, cohesion: 1e15}}
+blocks:
+  - {rectangle: {corner: [-1, -1], size: [3, 1]}, held: true}
+  - {rectangle: {corner: [0, 0], size: [1, 1]}, velocity: [0, -1e-3], held: [true, false, true]}
+run: {until: {time: 5}, unchecked: true}
+)");
+    const double limit = 2.0 / std::sqrt(1e9 / 2500.0), kinetic = 0.5 * 2500.0 * 1e-6;
+    scenario.run.time_step = 0.95 * limit;
+    WholeRun below(scenario);
+    double most = 0.0;
+    below.to_the_end([&](WholeRun& r) { most = std::max(most, r.simulation().energy_drift()); });
+    CHECK(most > 5.0 * kinetic);
+    CHECK(below.simulation().energy_gain() < 1e-6);
+    scenario.run.time_step = 1.05 * limit;
+    CHECK_THROWS_AS(WholeRun(scenario).to_the_end(), DivergenceError);
+}
+
+TEST_CASE("blocks that a long step throws apart have gained energy, and end the run once it is ten times the largest") {
+    // A chain of six blocks that can only move up and down, gravity switched on: they ring, and part.
+    Scenario scenario = scenario_of(R"(
+gravity: [0, -9.81]
+materials: {rock: {density: 2500}}
+joints: {joint: {normal_stiffness: 1e9, shear_stiffness: 5e8}}
+blocks:
+  - {rectangle: {corner: [-1, -1], size: [3, 1]}, held: true}
+  - {rectangle: {corner: [0, 0], size: [1, 1]}, held: [true, false, true], repeat: {count: 6, step: [0, 1]}}
+run: {until: {time: 1}, unchecked: true}
+)");
+    const double omega = 2.0 * std::sqrt(1e9 / 2500.0) * std::sin(11.0 * std::numbers::pi / 26.0);
+    scenario.run.time_step = 0.1 * 2.0 / omega;
+    WholeRun below(scenario);
+    below.to_the_end();
+    CHECK(below.simulation().energy_gain() < 0.1 * energy_alarm);
+    scenario.run.time_step = 1.2 * 2.0 / omega;
+    WholeRun above(scenario);
+    above.to_the_end();
+    CHECK(above.simulation().energy_gain() > energy_alarm);
+    CHECK(above.simulation().energy_drift() > 100.0);  // weight times settlement, summed up the chain, is 20 J
+    scenario.run.time_step = 2.0 * 2.0 / omega;
+    WholeRun far_above(scenario);
+    CHECK_THROWS_AS(far_above.to_the_end(), DivergenceError);
+    CHECK(far_above.simulation().energy_gain() > energy_explosion);
 }

@@ -28,7 +28,7 @@ public:
         each(s.contacts.reaction);
         const Ledger& l = s.ledger;
         add(l.total0, l.kinetic0, l.gravity, l.loads, l.contact, l.local_damping, l.driven, l.friction, l.contact_damping,
-            l.released);
+            l.released, l.gained, l.largest, s.earlier_gain);
     }
     bool operator==(const Bits&) const = default;
 

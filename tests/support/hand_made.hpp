@@ -129,7 +129,7 @@ inline State random_state(const Model& m, std::uint64_t seed, int contacts) {
     for (auto& cell : s.contacts.broken) cell = static_cast<std::uint8_t>(below(3));
     Ledger& l = s.ledger;
     for (double* e : {&l.total0, &l.kinetic0, &l.gravity, &l.loads, &l.contact, &l.local_damping, &l.driven, &l.friction,
-                      &l.contact_damping, &l.released})
+                      &l.contact_damping, &l.released, &l.gained, &l.largest, &s.earlier_gain})
         *e = number();
     return s;
 }

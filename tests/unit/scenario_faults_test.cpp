@@ -128,7 +128,8 @@ TEST_CASE("what belongs to later versions is refused in one line") {
 }
 
 TEST_CASE("missing keys are named with the table they belong to") {
-    check_fault(with("run: {until: {time: 1}}\n", "", small_scenario), "f.yaml:1 run", "is missing");
+    check_fault(with("run: {until: {time: 1}}\n", "", small_scenario), "f.yaml:1 run.until", "is missing");
+    check_fault(with("until: {time: 1}", "", small_scenario), "f.yaml:4 run.until", "is missing");
     check_fault(with("until: {time: 1}", "until: {}", small_scenario), "f.yaml:4 run.until",
                 "at least one of time, equilibrium");
     check_fault(with("{density: 2500}", "{}", small_scenario), "f.yaml:2 materials.rock.density", "is missing");

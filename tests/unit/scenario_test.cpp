@@ -157,6 +157,18 @@ TEST_CASE("a settling stage is damped, ends in equilibrium and resets") {
     CHECK(own.stages[0].until.equilibrium == 1e-6);
 }
 
+TEST_CASE("with stages a run may end with the last of them, and takes nothing from `run` that belongs to a stage") {
+    const std::string scene =
+        small_scenario.substr(0, small_scenario.find("run:")) + "stages: [{name: fall, until: {time: 3}}]\n";
+    for (const std::string run : {"run: {}\n", "run: {threads: 2}\n", ""}) {
+        const Scenario s = read(scene + run);
+        CHECK_FALSE(s.run.until.time);
+        CHECK(s.stages.size() == 1);
+    }
+    CHECK_THROWS_WITH(read(scene + "run: {time_step: 1e-3}\n"), Catch::Contains("5 run.time_step: goes with run.until"));
+    CHECK_THROWS_WITH(read(scene + "run: {damping: {local: 0.1}}\n"), Catch::Contains("5 run.damping: goes with run.until"));
+}
+
 TEST_CASE("a stage that changes a joint keeps its other values, also those of earlier stages") {
     const Scenario s = read(full_scenario);
     const StageSpec& excavate = s.stages.at(1);

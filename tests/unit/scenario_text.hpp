@@ -96,7 +96,6 @@ record:
     - {name: joint, joint: [10, 20], quantities: [normal_stress, opening]}
     - {block: plate, quantity: reaction, component: y}
   contacts: false
-  settling: true
 expect:
   - {quantity: displacement, point: [30, 30], at: end, value: 1.23, tolerance: 0.01}
   - {quantity: acceleration, direction_deg: -30, block: plate, between: [0.5, 1], value: 0, tolerance_absolute: 1e-6}

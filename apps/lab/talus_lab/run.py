@@ -62,7 +62,7 @@ class Run:
 
     @property
     def status(self) -> str:
-        """in progress (also after a kill) | complete | interrupted | diverged | stopped"""
+        """in progress (also after a kill) | complete | interrupted | diverged | stopped | refused"""
         return str(self.attributes.get("status", ""))
 
     @cached_property
