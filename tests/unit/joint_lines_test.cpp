@@ -279,6 +279,17 @@ TEST_CASE("traces are snapped to earlier corners and extended at tips that end a
     CHECK((result.lines[0].from - (Vec2(0, 0) - 0.5 * Vec2(1, 0.02).normalized())).norm() < 1e-15);  // the bent segment
 }
 
+TEST_CASE("a trace that ends at a corner of another one ends there exactly, and no stub dangles behind it") {
+    TraceMapSpec map;
+    map.lines = {{{-20, 0}, {0.1, 0.3}, {20, 0}}, {{0.1, 0.3}, {0.7, 20}}};
+    CutInput input;
+    input.outline = square(10);
+    input.lines = trace_lines(map, input.outline, 1e-6, 0).lines;
+    const CutResult cut_through = cut(input);
+    CHECK(cut_through.blocks.size() == 3);
+    CHECK(cut_through.report.dangling == 0);
+}
+
 TEST_CASE("a trace drawn past a corner within `snap` is led through it, so that no sliver is left") {
     TraceMapSpec map;
     map.snap = 0.01;
