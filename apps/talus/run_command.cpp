@@ -101,6 +101,12 @@ int carry_out(Simulation& simulation, Recorder& recorder, Watch* watch, Entry en
         print_stage(s);
         std::fflush(stdout);
     };
+    options.missed_equilibrium = [&](const Simulation& s) {
+        progress.done();
+        std::printf("%s: no equilibrium within %s: unbalanced ratio %.2g, to end at %.2g\n", s.stage().name.c_str(),
+                    number(s.state().stage_time, "s").c_str(), unbalanced_ratio(s.model(), s.state()),
+                    *s.stage().until.equilibrium);
+    };
     options.progress = [&](const Simulation& s) { progress(s); };
     options.interrupted = [] { return asked_to_stop.load(); };
     if (entry == Entry::resumed) progress.stage_begun(simulation);
@@ -133,8 +139,7 @@ int carry_out(Simulation& simulation, Recorder& recorder, Watch* watch, Entry en
     int failed = 0;
     if (watch) failed = print_verdicts(watch->judge(), "  ");
     if (outcome == Outcome::no_equilibrium) {
-        std::printf("a stage that was to end in equilibrium ran out of time: unbalanced ratio %.2g\n",
-                    unbalanced_ratio(simulation.model(), simulation.state()));
+        std::printf("a stage that was to end in equilibrium ran out of time, see above\n");
         return not_met;
     }
     return failed > 0 ? not_met : ok;

@@ -212,7 +212,10 @@ Outcome run(Simulation& simulation, const RunOptions& options) {
             if (options.progress) options.progress(simulation);
         }
         if (options.recorder) options.recorder->end_stage(simulation);
-        settled = settled && (!simulation.stage().until.equilibrium || simulation.reached_equilibrium());
+        if (simulation.stage().until.equilibrium && !simulation.reached_equilibrium()) {
+            settled = false;
+            if (options.missed_equilibrium) options.missed_equilibrium(simulation);
+        }
         if (!simulation.end_stage()) break;
     }
     return settled ? Outcome::complete : Outcome::no_equilibrium;

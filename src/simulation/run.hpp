@@ -65,11 +65,12 @@ enum class Entry {
 };
 
 struct RunOptions {
-    Recorder* recorder = nullptr;                        // none: nothing is written
-    Watch* watch = nullptr;                              // none: expectations are not judged
-    std::function<void(const Simulation&)> stage_begun;  // after its step is chosen
-    std::function<void(const Simulation&)> progress;     // called every step; cheap
-    std::function<bool()> interrupted;                   // asked every step
+    Recorder* recorder = nullptr;                               // none: nothing is written
+    Watch* watch = nullptr;                                     // none: expectations are not judged
+    std::function<void(const Simulation&)> stage_begun;         // after its step is chosen
+    std::function<void(const Simulation&)> missed_equilibrium;  // a stage that was to end in it ran out of time
+    std::function<void(const Simulation&)> progress;            // called every step; cheap
+    std::function<bool()> interrupted;                          // asked every step
     Entry entry = Entry::fresh;
 };
 
