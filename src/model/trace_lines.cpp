@@ -118,8 +118,9 @@ void add_polyline(std::vector<Vec2> points, double at_first, double at_last, int
     if (points.front() != points.back()) {
         const Vec2 first = (points[0] - points[1]).normalized();
         const Vec2 last = (points.back() - points[points.size() - 2]).normalized();
-        points.front() += at_first * first;
-        points.back() += at_last * last;
+        // The tip stays a corner: moved outwards, the rounded line could pass beside another one that ends there too.
+        if (at_first > 0.0) points.insert(points.begin(), points.front() + at_first * first);
+        if (at_last > 0.0) points.push_back(points.back() + at_last * last);
     }
     for (std::size_t i = 0; i + 1 < points.size(); ++i) lines.push_back({points[i], points[i + 1], source});
 }

@@ -24,7 +24,7 @@ struct TraceLines {
 /// least (m, also the least `snap`), so that a trace that ends on the outline meets it in spite of rounding.
 TraceLines trace_lines(const TraceMapSpec& map, const Polygon& outline, double reach, int source);
 
-/// Adds the segments of a polyline whose tips are moved outwards by so much (m); a closed one has no tips.
+/// Adds the segments of a polyline, drawn out by so much (m) at its tips; a closed one has no tips.
 void add_polyline(std::vector<Vec2> points, double at_first, double at_last, int source, std::vector<CutLine>& lines);
 
 }  // namespace talus
