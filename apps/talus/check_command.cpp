@@ -1,6 +1,7 @@
 #include "commands.hpp"
 #include "summary.hpp"
 
+#include "core/text.hpp"
 #include "output/output_path.hpp"
 #include "output/results.hpp"
 #include "scenario/reader.hpp"
@@ -19,7 +20,9 @@
 namespace talus::cli {
 namespace {
 
-constexpr int trial_steps = 20;  // run to measure the cost of one
+constexpr int warm_up_steps = 10;   // while memory is got and the first contacts are found
+constexpr double trial_time = 0.5;  // s; shorter and what else the machine does shows, longer and the user waits
+constexpr std::size_t slivers_shown = 5;
 
 void print_blocks(const Simulation& simulation) {
     const Model& model = simulation.model();
@@ -42,22 +45,47 @@ void print_blocks(const Simulation& simulation) {
         if (n > 0) std::printf("               %8td of %.0e to %.0e m2\n", n, upper / 10, upper);
         if (upper >= area.back()) break;
     }
-    std::printf("  shortest edge %s, thinnest part %s\n",
+    std::printf("               shortest edge %s, thinnest part %s\n",
                 number(*std::min_element(model.corners.length.begin(), model.corners.length.end()), "m").c_str(),
                 number(*std::min_element(model.parts.thickness.begin(), model.parts.thickness.end()), "m").c_str());
 }
 
-void print_cut(const BuildReport& report) {
-    const CutReport& cut = report.cut;
+void print_traces(const Simulation& simulation) {
+    const BuildReport& report = simulation.report();
+    if (!simulation.scenario().rock || !simulation.scenario().rock->traces) return;
+    const TraceMapSpec& map = *simulation.scenario().rock->traces;
+    std::printf("traces         %d read from %s; %d of %d ends are free and were extended by %s\n", report.trace_count,
+                std::filesystem::path(map.file).filename().c_str(), report.tips_extended, 2 * report.trace_count,
+                number(map.extend, "m").c_str());
+    std::printf("               snapped within %s: %d corners moved onto another one, %d set into traces that pass by\n",
+                number(map.snap, "m").c_str(), report.corners_snapped, report.trace_junctions);
+}
+
+void print_slivers(const CutReport& cut, const Vec2& origin) {
+    std::printf("slivers        smaller than %s or narrower than %s: ", number(cut.sliver_area, "m2").c_str(),
+                number(cut.sliver_width, "m").c_str());
+    if (cut.merged + cut.dropped == 0) {
+        std::printf("none\n");
+        return;
+    }
+    std::printf("%d merged with a neighbour (%s), %d dropped (%s)\n", cut.merged, number(cut.merged_area, "m2").c_str(),
+                cut.dropped, number(cut.dropped_area, "m2").c_str());
+    const std::size_t shown = std::min(cut.merged_at.size(), slivers_shown);
+    for (std::size_t i = 0; i < shown; ++i)
+        std::printf("%s%s", i == 0 ? "               at " : ", ",
+                    place(cut.merged_at[i] + origin, cut.sliver_width).c_str());
+    if (shown > 0) std::printf("%s\n", shown < cut.merged_at.size() ? ", ..." : "");
+}
+
+void print_cut(const Simulation& simulation) {
+    const CutReport& cut = simulation.report().cut;
     if (cut.outline_area <= 0.0) return;
-    std::printf("cut            area of the outline less holes %.12g m2, sum of blocks differs by %.1g of it\n",
-                cut.outline_area, std::abs(cut.blocks_area - cut.outline_area) / cut.outline_area);
-    std::printf("               %d dangling ends pruned, %d slivers merged (%s), %d dropped, %d concave, %d islands\n",
-                cut.dangling, cut.merged, number(cut.merged_area, "m2").c_str(), cut.dropped, cut.concave, cut.islands);
-    for (std::size_t i = 0; i < std::min<std::size_t>(cut.merged_at.size(), 5); ++i)
-        std::printf("               sliver at (%.6g, %.6g)\n", cut.merged_at[i].x(), cut.merged_at[i].y());
-    if (report.trace_count > 0)
-        std::printf("traces         %d read, %d tips extended\n", report.trace_count, report.tips_extended);
+    print_traces(simulation);
+    std::printf("cut            %d ends of lines stop inside a block and cut nothing (pruned), %d islands\n", cut.dangling,
+                cut.islands);
+    std::printf("               outline less holes %.10g m2; sum of the blocks differs by %.1g of it\n", cut.outline_area,
+                std::abs(cut.blocks_area - cut.outline_area) / cut.outline_area);
+    print_slivers(cut, simulation.model().origin);
 }
 
 void print_joints(const Simulation& simulation) {
@@ -95,6 +123,30 @@ double peak_memory() {
     return 1024.0 * static_cast<double>(usage.ru_maxrss);
 }
 
+// s, the median: other work on the machine makes single steps slower, none faster.
+double time_of_a_step(Simulation& simulation) {
+    std::vector<double> seconds;
+    const Stopwatch clock;
+    for (int i = 0; clock.seconds() < trial_time && !simulation.stage_over(); ++i) {
+        const Stopwatch step;
+        simulation.step();
+        if (i >= warm_up_steps || seconds.empty()) seconds.push_back(step.seconds());
+    }
+    if (seconds.empty()) return 0.0;
+    const auto middle = seconds.begin() + static_cast<std::ptrdiff_t>(seconds.size() / 2);
+    std::nth_element(seconds.begin(), middle, seconds.end());
+    return *middle;
+}
+
+std::string duration(double seconds) {
+    const auto [size, unit] = seconds < 120.0    ? std::pair(1.0, "s")
+                              : seconds < 7200.0 ? std::pair(60.0, "min")
+                                                 : std::pair(3600.0, "h");
+    char text[32];
+    std::snprintf(text, sizeof text, "%.2g %s", seconds / size, unit);
+    return text;
+}
+
 void print_cost(Simulation& simulation) {
     const StableStep stable = simulation.stable();
     const Model& model = simulation.model();
@@ -103,26 +155,24 @@ void print_cost(Simulation& simulation) {
     std::printf("time step      %s: rigorous bound %s, limit estimated at %s\n", number(dt, "s").c_str(),
                 number(stable.bound, "s").c_str(), number(stable.estimate, "s").c_str());
     if (stable.block >= 0) {
-        const Vec2 at = model.blocks.start[stable.block] + model.origin;
-        std::printf("               governed by block %d, %s, at (%.6g, %.6g)\n", stable.block,
-                    number(model.blocks.area[stable.block], "m2").c_str(), at.x(), at.y());
+        std::printf("               governed by %s, %s\n", block_and_place(model, stable.block).c_str(),
+                    number(model.blocks.area[stable.block], "m2").c_str());
     }
-    Stopwatch clock;
-    for (int i = 0; i < trial_steps && !simulation.stage_over(); ++i) simulation.step();
-    const double per_step = clock.seconds() / std::max<double>(static_cast<double>(simulation.steps_done()), 1.0);
+    const double per_step = time_of_a_step(simulation);
     double length = 0.0;
-    bool open_end = false;
+    bool may_end_before = false, has_no_end = false;  // a stage in equilibrium
     const Scenario& scenario = simulation.scenario();
     std::vector<Until> untils;
     for (const StageSpec& stage : scenario.stages) untils.push_back(stage.until);
     untils.push_back(scenario.run.until);
     for (const Until& until : untils) {
         length += until.time.value_or(0.0);
-        open_end = open_end || until.equilibrium;
+        may_end_before = may_end_before || (until.equilibrium && until.time);
+        has_no_end = has_no_end || !until.time;
     }
-    std::printf("cost           %d stage%s, %s%.3g steps, %s per step, %s%s in all\n", stages, stages == 1 ? "" : "s",
-                open_end ? "at most " : "", length / dt, number(1e3 * per_step, "ms").c_str(),
-                open_end ? "at most " : "about ", number(length / dt * per_step, "s").c_str());
+    const char* bound = has_no_end ? "at least " : may_end_before ? "at most " : "";
+    std::printf("cost           %d stage%s, %s%.2g steps, about %.2g ms per step as it begins: %sabout %s in all\n", stages,
+                stages == 1 ? "" : "s", bound, length / dt, 1e3 * per_step, bound, duration(length / dt * per_step).c_str());
     const double frames = scenario.record.frame_every && simulation.recorded_time() > 0.0
                               ? simulation.recorded_time() / *scenario.record.frame_every
                               : scenario.record.frame_count.value_or(50);
@@ -163,7 +213,7 @@ int check_command(const CheckArguments& arguments) {
         std::printf("geometry       %s\n", path.c_str());
     }
     print_blocks(simulation);
-    print_cut(simulation.report());
+    print_cut(simulation);
     print_joints(simulation);
     print_settlement(simulation);
     std::printf("solver         explicit: the only one yet; right where joint stiffness is given\n");

@@ -14,6 +14,8 @@ int info_command(const std::string& results) {
     std::printf("%s: %s\n", results.c_str(), reader.status().c_str());
     for (const auto& [name, value] : reader.attributes()) std::printf("  %-18s %s\n", name.c_str(), value.c_str());
     for (const std::string& change : reader.overrides()) std::printf("  %-18s %s\n", "set", change.c_str());
+    for (const auto& [name, hash] : reader.files())
+        std::printf("  %-18s %s, content %016llx\n", "file", name.c_str(), static_cast<unsigned long long>(hash));
     const std::vector<double> times = reader.frame_times();
     std::printf("  %-18s %lld", "blocks", static_cast<long long>(reader.blocks()));
     std::printf("\n  %-18s %zu", "frames", times.size());

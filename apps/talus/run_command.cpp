@@ -4,6 +4,7 @@
 
 #include "core/errors.hpp"
 #include "output/output_path.hpp"
+#include "output/reader.hpp"
 #include "scenario/reader.hpp"
 #include "simulation/run.hpp"
 
@@ -60,6 +61,17 @@ Scenario read_noted(const RestartInfo& info) {
     const std::string name = overrides.back().substr(case_mark.size());
     overrides.pop_back();
     return row_named(read_cases_text(info.scenario_text, info.scenario_file, folder, overrides), name, info.scenario_file);
+}
+
+// Why a restart file does not fit the scenario in it: a file that the scenario names is another one now, or else Talus is.
+void check_still_the_same(const Scenario& scenario, const RestartInfo& info, const std::string& results) {
+    if (scenario.hash == info.scenario_hash) return;
+    const auto then = ResultsReader(results).files();
+    for (std::size_t i = 0; i < std::min(then.size(), scenario.files.size()); ++i)
+        if (then[i].second != scenario.files[i].second)
+            throw InputError(scenario.files[i].first + ": has changed since " + results +
+                             " was begun; a run goes on only with what it began with");
+    throw InputError(restart_path(results) + ": the scenario in it reads differently with this version");
 }
 
 void print_scene(const Simulation& simulation) {
@@ -158,8 +170,7 @@ int resume_command(const std::string& results, int threads) {
                          "results: bring it back, or run the scenario again");
     const RestartInfo info = read_restart_info(restart_path(results));
     Scenario scenario = read_noted(info);
-    if (scenario.hash != info.scenario_hash)
-        throw InputError(restart_path(results) + ": the scenario in it reads differently with this version");
+    check_still_the_same(scenario, info, results);
     if (threads > 0) scenario.run.threads = threads;
     Scene scene = build(scenario);
     State state = read_restart(restart_path(results), scene.model);

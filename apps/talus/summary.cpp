@@ -1,5 +1,7 @@
 #include "summary.hpp"
 
+#include "core/text.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -8,13 +10,8 @@
 namespace talus::cli {
 namespace {
 
-std::string place(const Model& model, BlockId b) {
-    const Vec2 at = model.blocks.start[b] + model.origin;
-    char text[96];
-    std::snprintf(text, sizeof text, "block %d%s%s%s at (%.6g, %.6g)", b, model.blocks.name[b].empty() ? "" : " '",
-                  model.blocks.name[b].c_str(), model.blocks.name[b].empty() ? "" : "'", at.x(), at.y());
-    return text;
-}
+// Contacts below this share of the mean force only touch: at rest they tremble about zero, and slide as often as not.
+constexpr double light = 0.01;
 
 void print_movers(const Simulation& simulation) {
     const Model& model = simulation.model();
@@ -32,40 +29,52 @@ void print_movers(const Simulation& simulation) {
     for (std::size_t i = 0; i < shown && moved[order[i]] > 0.0; ++i) {
         const BlockId b = order[i];
         std::printf("  %s %s: moved %s, turned %.3g deg, speed %s\n", i == 0 ? "largest movers" : "              ",
-                    place(model, b).c_str(), number(moved[b], "m").c_str(),
+                    block_and_place(model, b).c_str(), number(moved[b], "m").c_str(),
                     degrees(state.motion.angle[b] - state.start_angle[b]),
                     number(state.motion.velocity[b].norm(), "m/s").c_str());
     }
 }
 
+double size_of_force(const Contact& c) { return std::hypot(c.normal_force, c.shear_force); }
+
+void print_contacts(const Simulation& simulation) {
+    const Contacts& contacts = simulation.state().contacts;
+    int touching = 0, loaded = 0, sliding = 0;
+    double sum = 0.0;
+    for (const Contact& c : contacts.list)
+        if (c.touching) ++touching, sum += size_of_force(c);
+    for (const Contact& c : contacts.list)
+        if (c.touching && size_of_force(c) > light * sum / touching) ++loaded, sliding += c.sliding;
+    std::printf("  contacts       %d touch, %d carry more than %.0f %% of the mean force, %d of these slide", touching,
+                loaded, 100.0 * light, sliding);
+    const Model& model = simulation.model();
+    std::ptrdiff_t cells = 0, broken = 0;
+    for (const JointFace& face : model.faces) {
+        if (!face.bonded) continue;
+        const int own = model.joints[face.joint].cells;
+        const auto first = contacts.broken.begin() + face.first_cell;
+        cells += own;
+        broken += own - std::count(first, first + own, 0);
+    }
+    if (cells > 0) std::printf("; %td of %td bond cells broken", broken, cells);
+    std::printf("\n");
+}
+
 void print_overlap(const Simulation& simulation) {
     const Model& model = simulation.model();
-    double deepest = 0.0;
     const Contact* worst = nullptr;
-    int touching = 0, sliding = 0;
-    for (const Contact& c : simulation.state().contacts.list) {
-        if (!c.touching) continue;
-        ++touching;
-        sliding += c.sliding;
-        if (c.overlap > deepest) deepest = c.overlap, worst = &c;
-    }
-    const auto broken = std::count_if(simulation.state().contacts.broken.begin(), simulation.state().contacts.broken.end(),
-                                      [](std::uint8_t b) { return b != 0; });
-    std::printf("  contacts       %d carry force, %d slide", touching, sliding);
-    if (!simulation.state().contacts.broken.empty())
-        std::printf(", %td of %zu bond cells broken", broken, simulation.state().contacts.broken.size());
-    std::printf("\n");
+    for (const Contact& c : simulation.state().contacts.list)
+        if (c.touching && c.overlap > (worst ? worst->overlap : 0.0)) worst = &c;
     if (!worst) return;
-    const double shortest = *std::min_element(model.corners.length.begin(), model.corners.length.end());
+    const BlockId a = model.parts.block[worst->part_a], b = model.parts.block[worst->part_b];
     const double thin = std::min(model.parts.thickness[worst->part_a], model.parts.thickness[worst->part_b]);
-    std::printf("  largest overlap %s: %.2g of the shortest edge (%s)\n", number(deepest, "m").c_str(), deepest / shortest,
-                number(shortest, "m").c_str());
-    if (deepest > 0.05 * thin)
-        std::printf(
-            "  warning: an overlap of %.0f %% of the thinner block between blocks %d and %d; a normal stiffness of %s "
-            "would keep it below 1 %%\n",
-            100.0 * deepest / thin, model.parts.block[worst->part_a], model.parts.block[worst->part_b],
-            number(model.joints[worst->joint].kn * deepest / (0.01 * thin), "Pa/m").c_str());
+    const double share = worst->overlap / thin;
+    std::printf("  largest overlap %s, %.2g %% of the thinner part (%s), between blocks %d and %d at %s\n",
+                number(worst->overlap, "m").c_str(), 100.0 * share, number(thin, "m").c_str(), a, b,
+                place(worst->point + model.origin, thin).c_str());
+    if (share > 0.05)
+        std::printf("  warning: that is deep; a normal stiffness of %s would keep it below 1 %%\n",
+                    number(model.joints[worst->joint].kn * share / 0.01, "Pa/m").c_str());
 }
 
 void print_energy(const Simulation& simulation) {
@@ -112,6 +121,12 @@ std::string out_of_time(const Simulation& simulation) {
            number(*stage.until.equilibrium);
 }
 
+std::string block_and_place(const Model& model, BlockId b) {
+    const std::string& name = model.blocks.name[b];
+    return "block " + std::to_string(b) + (name.empty() ? "" : " '" + name + "'") + " at " +
+           place(model.blocks.start[b] + model.origin, std::sqrt(model.blocks.area[b]));
+}
+
 void print_stage(const Simulation& simulation) {
     const StableStep& stable = simulation.stable();
     std::printf("%s: step %s (rigorous bound %s, limit estimated at %s)\n", simulation.stage().name.c_str(),
@@ -122,6 +137,7 @@ void print_stage(const Simulation& simulation) {
 void print_summary(const Simulation& simulation, double wall_time) {
     std::printf("at t = %s:\n", number(simulation.state().time, "s").c_str());
     print_movers(simulation);
+    print_contacts(simulation);
     print_overlap(simulation);
     print_energy(simulation);
     std::printf("  unbalanced     %.2g of the mean contact force\n",

@@ -14,6 +14,10 @@ std::string number(double value, const char* unit = "");
 
 /// What to say at the end of a stage that was to end in equilibrium and did not.
 std::string out_of_time(const Simulation& simulation);
+
+/// "block 7 'key' at (x, y)", with as many digits as it takes to find the block, on a map too.
+std::string block_and_place(const Model& model, BlockId block);
+
 void print_stage(const Simulation& simulation);
 void print_summary(const Simulation& simulation, double wall_time);
 /// One line each; returns how many failed.

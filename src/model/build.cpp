@@ -128,7 +128,7 @@ void Builder::shape_single_blocks() {
 
 void Builder::hold() {
     const int rock_blocks = static_cast<int>(rock_.shapes.size());
-    if (scenario_.rock) hold_rock(scenario_.rock->held, corner_, rock_blocks, rock_.outline, model_);
+    if (scenario_.rock) hold_rock(*scenario_.rock, corner_, rock_blocks, rock_.outline, model_, faults_);
     for (std::size_t i = 0; i < scenario_.blocks.size(); ++i)
         hold_block(scenario_.blocks[i], rock_blocks + static_cast<int>(i), model_);
 }

@@ -1,5 +1,7 @@
 #include "model/supports.hpp"
 
+#include "core/text.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -7,6 +9,7 @@ namespace talus {
 namespace {
 
 constexpr double relative_tolerance = 1e-9;
+constexpr const char* side_names[] = {"left", "right", "bottom", "top"};  // in the order of `sides`
 
 double size(const Box& box) { return std::max(box.xmax - box.xmin, box.ymax - box.ymin); }
 
@@ -23,6 +26,21 @@ Fixity fixity(SideSupport support, Side side) {
     return {upright, !upright, true};
 }
 
+int axis_across(Side side) { return side == Side::left || side == Side::right ? 0 : 1; }
+
+double extreme(const Box& outline, Side side) {
+    switch (side) {
+        case Side::left:
+            return outline.xmin;
+        case Side::right:
+            return outline.xmax;
+        case Side::bottom:
+            return outline.ymin;
+        default:
+            return outline.ymax;
+    }
+}
+
 double reach(const Model& model, std::span<const Vec2> corner, BlockId block, bool up) {
     const std::vector<int>& first = model.parts.first_corner;
     const auto own = corner.subspan(first[model.blocks.first_part[block]],
@@ -36,12 +54,8 @@ double reach(const Model& model, std::span<const Vec2> corner, BlockId block, bo
 std::vector<OuterEdge> edges_on_side(const Model& model, std::span<const Vec2> corner, int blocks, const Box& outline,
                                      Side side) {
     const double tolerance = relative_tolerance * size(outline);
-    const int axis = side == Side::left || side == Side::right ? 0 : 1;
-    const double line = side == Side::left     ? outline.xmin
-                        : side == Side::right  ? outline.xmax
-                        : side == Side::bottom ? outline.ymin
-                                               : outline.ymax;
-    const auto on_line = [&](int k) { return std::abs(corner[k][axis] - line) <= tolerance; };
+    const int axis = axis_across(side);
+    const auto on_line = [&](int k) { return std::abs(corner[k][axis] - extreme(outline, side)) <= tolerance; };
     std::vector<OuterEdge> edges;
     for (PartId p = 0; p < model.blocks.first_part[blocks]; ++p) {
         const int first = model.parts.first_corner[p], last = model.parts.first_corner[p + 1];
@@ -53,21 +67,43 @@ std::vector<OuterEdge> edges_on_side(const Model& model, std::span<const Vec2> c
     return edges;
 }
 
-void hold_rock(const HeldSpec& held, std::span<const Vec2> corner, int rock_blocks, const Box& outline, Model& model) {
+void hold_rock(const RockSpec& rock, std::span<const Vec2> corner, int rock_blocks, const Box& outline, Model& model,
+               std::vector<Fault>& faults) {
+    const HeldSpec& held = rock.held;
+    const auto found_nothing = [&](const std::string& key, const std::string& what) {
+        faults.push_back({rock.where, "rock.held." + key, "holds nothing: " + what});
+    };
     const SideSupport supports[] = {held.left, held.right, held.bottom, held.top};
-    for (int i = 0; i < 4; ++i)
-        if (supports[i] != SideSupport::none)
-            for (const OuterEdge& edge : edges_on_side(model, corner, rock_blocks, outline, sides[i]))
-                fix(fixity(supports[i], sides[i]), edge.block, model.blocks);
+    for (int i = 0; i < 4; ++i) {
+        if (supports[i] == SideSupport::none) continue;
+        const auto edges = edges_on_side(model, corner, rock_blocks, outline, sides[i]);
+        for (const OuterEdge& edge : edges) fix(fixity(supports[i], sides[i]), edge.block, model.blocks);
+        if (edges.empty()) {
+            const int axis = axis_across(sides[i]);
+            found_nothing(side_names[i], std::string("no block has an edge along ") + "xy"[axis] + " = " +
+                                             map_number(extreme(outline, sides[i]) + model.origin[axis]) +
+                                             ", the farthest that the outline reaches; on an irregular outline use "
+                                             "`below`, `above` or `inside`");
+        }
+    }
 
     const double tolerance = relative_tolerance * size(outline);
-    for (BlockId b = 0; b < rock_blocks; ++b) {
-        const bool inside = std::any_of(held.inside.begin(), held.inside.end(),
-                                        [&](const Polygon& area) { return contains(area, model.blocks.start[b]); });
-        if (inside || (held.below && reach(model, corner, b, false) < *held.below - tolerance) ||
-            (held.above && reach(model, corner, b, true) > *held.above + tolerance))
-            fix({true, true, true}, b, model.blocks);
-    }
+    const auto hold_where = [&](const std::string& key, const std::string& what, auto meant) {
+        bool any = false;
+        for (BlockId b = 0; b < rock_blocks; ++b)
+            if (meant(b)) fix({true, true, true}, b, model.blocks), any = true;
+        if (!any) found_nothing(key, what);
+    };
+    const auto height = [&](double y) { return "y = " + map_number(y + model.origin.y()); };
+    if (held.below)
+        hold_where("below", "no block reaches below " + height(*held.below) + "; the rock begins at " + height(outline.ymin),
+                   [&](BlockId b) { return reach(model, corner, b, false) < *held.below - tolerance; });
+    if (held.above)
+        hold_where("above", "no block reaches above " + height(*held.above) + "; the rock ends at " + height(outline.ymax),
+                   [&](BlockId b) { return reach(model, corner, b, true) > *held.above + tolerance; });
+    for (std::size_t i = 0; i < held.inside.size(); ++i)
+        hold_where("inside[" + std::to_string(i) + "]", "no block has its centroid inside this outline",
+                   [&](BlockId b) { return contains(held.inside[i], model.blocks.start[b]); });
 }
 
 void hold_block(const BlockSpec& spec, BlockId block, Model& model) {

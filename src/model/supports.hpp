@@ -21,8 +21,10 @@ struct OuterEdge {
 std::vector<OuterEdge> edges_on_side(const Model& model, std::span<const Vec2> corner, int blocks, const Box& outline,
                                      Side side);
 
-/// Applies the rules of `held` to the first `rock_blocks` blocks.
-void hold_rock(const HeldSpec& held, std::span<const Vec2> corner, int rock_blocks, const Box& outline, Model& model);
+/// Applies the rules of `held` to the first `rock_blocks` blocks. A rule that finds no block is a fault: what its author
+/// believes to be held would fall.
+void hold_rock(const RockSpec& rock, std::span<const Vec2> corner, int rock_blocks, const Box& outline, Model& model,
+               std::vector<Fault>& faults);
 
 /// Holds or drives a single block.
 void hold_block(const BlockSpec& spec, BlockId block, Model& model);

@@ -98,12 +98,16 @@ void join_corners(std::vector<Polyline>& traces, const Polygon& outline, double 
 using Place = std::pair<double, double>;
 Place place(const Vec2& p) { return {p.x(), p.y()}; }
 
-/// How many times each corner is passed by any trace.
-std::map<Place, int> visits(const std::vector<Polyline>& traces) {
-    std::map<Place, int> count;
+struct Visits {  // of all traces to one corner
+    int end = 0, pass = 0;
+};
+
+std::map<Place, Visits> visits(const std::vector<Polyline>& traces) {
+    std::map<Place, Visits> all;
     for (const Polyline& points : traces)
-        for (const Vec2& p : points) ++count[place(p)];
-    return count;
+        for (std::size_t i = 0; i < points.size(); ++i)
+            ++(i == 0 || i + 1 == points.size() ? all[place(points[i])].end : all[place(points[i])].pass);
+    return all;
 }
 
 }  // namespace
@@ -114,8 +118,9 @@ void add_polyline(std::vector<Vec2> points, double at_first, double at_last, int
     if (points.front() != points.back()) {
         const Vec2 first = (points[0] - points[1]).normalized();
         const Vec2 last = (points.back() - points[points.size() - 2]).normalized();
-        points.front() += at_first * first;
-        points.back() += at_last * last;
+        // The tip stays a corner: moved outwards, the rounded line could pass beside another one that ends there too.
+        if (at_first > 0.0) points.insert(points.begin(), points.front() + at_first * first);
+        if (at_last > 0.0) points.push_back(points.back() + at_last * last);
     }
     for (std::size_t i = 0; i + 1 < points.size(); ++i) lines.push_back({points[i], points[i + 1], source});
 }
@@ -124,12 +129,14 @@ TraceLines trace_lines(const TraceMapSpec& map, const Polygon& outline, double r
     TraceLines result;
     std::vector<Polyline> traces = map.lines;
     if (const double snap = std::max(map.snap, reach); snap > 0.0) join_corners(traces, outline, snap, result);
-    const std::map<Place, int> count = visits(traces);
+    const std::map<Place, Visits> all = visits(traces);
     for (const Polyline& points : traces) {
         if (points.size() < 2) continue;
         ++result.traces;
         const auto extension = [&](const Vec2& tip) {
-            const bool extended = count.at(place(tip)) == 1 && map.extend > reach;
+            const auto [end, pass] = all.at(place(tip));
+            if (pass > 0) return 0.0;  // meets the other trace in this very corner: further on it would cut a splinter
+            const bool extended = end == 1 && map.extend > reach;
             result.tips_extended += extended;
             return extended ? map.extend : reach;
         };

@@ -20,11 +20,11 @@ struct TraceLines {
 /// Segments of a trace map, all with the given source. First corners closer than `snap` to one of the outline or to an
 /// earlier one are moved onto it, and segments that pass a corner by less than `snap` are led through it. Then the free
 /// tips of the traces, those at which no other trace passes, are extended along their last segments by `extend`; a trace
-/// that ends at another one was mapped so and goes no further. All tips are drawn out by `reach` (m, also the least
-/// `snap`), so that a trace that ends on the outline meets it in spite of rounding.
+/// that ends at another one was mapped so and goes no further. Tips at which no trace passes are drawn out by `reach` at
+/// least (m, also the least `snap`), so that a trace that ends on the outline meets it in spite of rounding.
 TraceLines trace_lines(const TraceMapSpec& map, const Polygon& outline, double reach, int source);
 
-/// Adds the segments of a polyline whose tips are moved outwards by so much (m); a closed one has no tips.
+/// Adds the segments of a polyline, drawn out by so much (m) at its tips; a closed one has no tips.
 void add_polyline(std::vector<Vec2> points, double at_first, double at_last, int source, std::vector<CutLine>& lines);
 
 }  // namespace talus

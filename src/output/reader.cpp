@@ -51,6 +51,14 @@ ResultsReader::ResultsReader(const std::string& path) : file_(h5::File::open(pat
 std::string ResultsReader::scenario_text() const { return file_.read_text("/talus/scenario"); }
 std::string ResultsReader::canonical_json() const { return file_.read_text("/talus/canonical_json"); }
 std::vector<std::string> ResultsReader::overrides() const { return file_.read_texts("/talus/overrides"); }
+
+std::vector<std::pair<std::string, std::uint64_t>> ResultsReader::files() const {
+    std::vector<std::pair<std::string, std::uint64_t>> all;
+    if (!file_.exists("/talus/files")) return all;
+    const auto names = file_.read_texts("/talus/files/name"), hashes = file_.read_texts("/talus/files/hash");
+    for (std::size_t i = 0; i < names.size(); ++i) all.emplace_back(names[i], std::stoull(hashes.at(i), nullptr, 16));
+    return all;
+}
 std::string ResultsReader::status() const { return file_.text("/talus", "status"); }
 std::int64_t ResultsReader::blocks() const { return file_.rows("/talus/blocks/mass"); }
 

@@ -24,6 +24,7 @@ public:
     std::string scenario_text() const;
     std::string canonical_json() const;
     std::vector<std::string> overrides() const;
+    std::vector<std::pair<std::string, std::uint64_t>> files() const;     // as in RunInfo
     std::vector<std::pair<std::string, std::string>> attributes() const;  // name and value of /talus, as text, sorted
     std::string status() const;  // in progress (or killed) | complete | interrupted | diverged | stopped | refused
 

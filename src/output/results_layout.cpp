@@ -26,6 +26,13 @@ void write_points(h5::File& file, const std::string& path, const std::vector<Vec
     file.write<double>(path, flat, {static_cast<std::int64_t>(points.size()), 2}, {"m", shape});
 }
 
+void write_files(h5::File& file, const RunInfo& info) {
+    std::vector<std::string> names, hashes;
+    for (const auto& [name, hash] : info.files) names.push_back(name), hashes.push_back(hash_text(hash));
+    file.write_texts("/talus/files/name", names, "files");
+    file.write_texts("/talus/files/hash", hashes, "files");
+}
+
 void write_provenance(h5::File& file, const Model& model, const RunInfo& info) {
     const std::vector<double> origin{model.origin.x(), model.origin.y()};
     file.make_group("/talus");
@@ -53,6 +60,7 @@ void write_provenance(h5::File& file, const Model& model, const RunInfo& info) {
     file.write_text("/talus/scenario", info.scenario_text);
     file.write_text("/talus/canonical_json", info.canonical_json);
     file.write_texts("/talus/overrides", info.overrides, "overrides");
+    write_files(file, info);
 }
 
 void write_blocks(h5::File& file, const Model& model) {

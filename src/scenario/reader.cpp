@@ -36,6 +36,20 @@ std::uint64_t fnv1a(const std::string& text) {
     return hash;
 }
 
+// Hash of everything the scenario says, and of what is in the files it only names.
+void sign(const Input& input, Scenario& scenario) {
+    const auto add = [&](const std::string& file) {
+        if (file.empty()) return;
+        const Input named = load((std::filesystem::path(input.folder) / file).string());
+        scenario.files.emplace_back(file, fnv1a(named.text));
+    };
+    if (scenario.rock) add(scenario.rock->outline_file);
+    if (scenario.rock && scenario.rock->traces) add(scenario.rock->traces->file);
+    std::string all = scenario.canonical_json;
+    for (const auto& [file, hash] : scenario.files) all += "\n" + std::to_string(hash);
+    scenario.hash = fnv1a(all);
+}
+
 [[noreturn]] void report(std::vector<Fault> faults) {
     const auto order = [](const Fault& fault) {
         return std::tie(fault.where.line, fault.where.file, fault.key, fault.message);
@@ -114,7 +128,7 @@ Scenario make_scenario(const Input& input, Value tree, std::vector<Fault>& fault
     check_end(scenario, checked, input.file, faults);
     scenario.text = input.text;
     scenario.canonical_json = to_json(checked);
-    scenario.hash = fnv1a(scenario.canonical_json);
+    if (faults.empty()) sign(input, scenario);
     return scenario;
 }
 

@@ -267,7 +267,8 @@ struct Scenario {
     std::vector<ExpectSpec> expect;
     std::string text;            // the file as read, with overrides noted in a last comment
     std::string canonical_json;  // resolved scenario: sorted keys (names in their order), every default, %.17g
-    std::uint64_t hash = 0;      // FNV-1a of canonical_json
+    std::vector<std::pair<std::string, std::uint64_t>> files;  // read for the scenario, as it names them; FNV-1a of each
+    std::uint64_t hash = 0;  // FNV-1a of canonical_json, followed by the hashes of the files
 };
 
 }  // namespace talus

@@ -33,7 +33,7 @@ Shape joint_set() {
 Shape held() {
     const Shape side = either({boolean(), choice({"roller"})});
     const auto key = [&](const std::string& name) {
-        return Key{name, side, fallback("false"), "blocks with an edge on this extreme side of the outline"};
+        return Key{name, side, fallback("false"), "blocks with an edge along the line of the outline farthest to this side"};
     };
     return table(
         "held", "Blocks of the rock that do not move. `true`: held fully; `roller`: free along the side only.",

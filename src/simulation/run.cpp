@@ -30,6 +30,7 @@ RunInfo run_info(const Simulation& simulation, const std::vector<std::string>& o
     info.scenario_text = scenario.text;
     info.canonical_json = scenario.canonical_json;
     info.scenario_hash = scenario.hash;
+    info.files = scenario.files;
     info.overrides = overrides;
     info.solver = "explicit";
     info.search = scenario.run.search;

@@ -217,6 +217,18 @@ class Interrupts(Program):
         self.assertIn("complete", self.talus("info", "parts.h5")[0])
         self.assert_same_results("whole.h5", "parts.h5")
 
+    def test_resume_wants_the_files_that_the_run_began_with(self):
+        self.write("map.csv", "id,x,y\na,-1,2\na,13,2\n")
+        self.write("mapped.yaml", SLOPE.replace("  held:", "  traces: {file: map.csv}\n  held:"))
+        process = self.start("run", "mapped.yaml")
+        self.assertTrue(self.when_running(process, "mapped.h5", 0.1), "the run is over before it can be interrupted")
+        interrupt(process)
+        self.assertIn("map.csv", self.talus("info", "mapped.h5")[0])
+        self.write("map.csv", "id,x,y\na,-1,2.5\na,13,2\n")
+        self.assertIn("map.csv: has changed", self.talus("resume", "mapped.h5", code=2)[1])
+        self.write("map.csv", "id,x,y\na,-1,2\na,13,2\n")
+        self.talus("resume", "mapped.h5")
+
     def test_ctrl_c_while_it_settles(self):
         process = self.start("run", "slope.yaml", "-o", "parts.h5", "--set", "stages[0].until.time=1")
         while not (self.folder / "parts.h5").exists():

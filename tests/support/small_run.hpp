@@ -18,6 +18,7 @@ inline RunInfo run_info() {
     info.scenario_text = "title: A wall\n";
     info.canonical_json = "{\"title\":\"A wall\"}";
     info.scenario_hash = 0x0123456789abcdefULL;
+    info.files = {{"maps/traces.geojson", 0xfedcba9876543210ULL}};
     info.overrides = {"run.threads=2", "joints.rough.cohesion=1e3"};
     info.solver = "explicit", info.search = "isu";
     info.skin = 0.01, info.time_step = 1e-5, info.stable_bound = 1.25e-5, info.stable_estimate = 2e-5;

@@ -345,6 +345,27 @@ TEST_CASE("rock is held when it reaches beyond a line, not when it ends on it") 
     CHECK(held_blocks() == 2);
 }
 
+TEST_CASE("a rule of `held` that finds no block is a fault that says what it looked for, in the coordinates of the user") {
+    // A triangle on its tip: nothing but a corner lies at its lowest point.
+    Scenario scene = rock({{0, 0}, {4, 4}, {-4, 4}}, {});
+    scene.origin = {450000, 6500000};
+    scene.rock->held.bottom = SideSupport::held;
+    scene.rock->held.below = -1.0;
+    scene.rock->held.above = 5.0;
+    scene.rock->held.inside = {rectangle(-1, 2, 1, 3), rectangle(7, 7, 8, 8)};
+    std::string message;
+    try {
+        build(scene);
+    } catch (const InputError& error) {
+        CHECK(error.faults().size() == 4);
+        message = error.what();
+    }
+    CHECK_THAT(message, Catch::Contains("rock.held.bottom: holds nothing") && Catch::Contains("y = 6500000,"));
+    CHECK_THAT(message, Catch::Contains("no block reaches below y = 6499999;"));
+    CHECK_THAT(message, Catch::Contains("no block reaches above y = 6500005; the rock ends at y = 6500004"));
+    CHECK_THAT(message, Catch::Contains("rock.held.inside[1]"));
+}
+
 TEST_CASE("faces along a joint set with a joint of its own have that joint, unless a pair of blocks is named") {
     Scenario scene = rock(rectangle(0, 0, 4, 3), {joint_set(0, 1, "bedding"), joint_set(90, 1)});
     scene.joints = {joint("plain"), joint("bedding"), joint("special")};

@@ -1,4 +1,5 @@
 #include "core/random.hpp"
+#include "core/text.hpp"
 #include "core/time_table.hpp"
 #include "support/catch.hpp"
 
@@ -26,4 +27,11 @@ TEST_CASE("normal numbers have mean zero and deviation one") {
     }
     CHECK(std::abs(sum / n) < 0.02);
     CHECK(squares / n == Approx(1.0).epsilon(0.02));
+}
+
+TEST_CASE("a place has the digits it takes to find a thing of its size, near the origin and on a map") {
+    CHECK(place({1.23456, -0.00001}, 1.0) == "(1.23, 0.00)");
+    CHECK(place({465993.93551, 6691596.80163}, 0.05) == "(465993.9355, 6691596.8016)");
+    CHECK(place({465993.93551, 6691596.80163}, 300.0) == "(465994, 6691597)");
+    CHECK(place({465993.93551, 6691596.80163}) == "(465993.9355, 6691596.802)");
 }

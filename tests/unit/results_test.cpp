@@ -94,6 +94,7 @@ TEST_CASE("provenance reads back") {
     CHECK(reader.scenario_text() == info.scenario_text);
     CHECK(reader.canonical_json() == info.canonical_json);
     CHECK(reader.overrides() == info.overrides);
+    CHECK(reader.files() == info.files);
     CHECK(reader.status() == "interrupted");
     CHECK(reader.blocks() == 2);
     const auto list = reader.attributes();

@@ -1,5 +1,7 @@
 #include "scenario/trace_file.hpp"
+
 #include "core/errors.hpp"
+#include "scenario/reader.hpp"
 #include "support/catch.hpp"
 
 #include <filesystem>
@@ -76,4 +78,24 @@ TEST_CASE("a file that gives no lines says its name and why") {
     CHECK(names(outline(written("two.geojson", R"({"type": "MultiPolygon", "coordinates":
         [[[[0, 0], [1, 0], [1, 1], [0, 0]]], [[[5, 0], [6, 0], [6, 1], [5, 0]]]]})")),
                 "has 2"));
+}
+
+TEST_CASE("the hash of a scenario tells two contents of a trace file apart") {
+    const std::string map = "id,x,y\na,0,1\na,4,1\n";
+    const std::string file = written("hashed.csv", map);
+    const std::string text =
+        "materials: {rock: {density: 2500}}\njoints: {plain: {normal_stiffness: 1e9, shear_stiffness: 5e8}}\n"
+        "rock: {outline: [[0, 0], [4, 0], [4, 3], [0, 3]], traces: {file: hashed.csv}}\nrun: {until: {time: 1}}\n";
+    const auto read = [&] {
+        return read_scenario_text(text, "scene.yaml", std::filesystem::path(file).parent_path().string());
+    };
+    const Scenario before = read();
+    REQUIRE(before.files.size() == 1);
+    CHECK(before.files[0].first == "hashed.csv");
+    CHECK(read().hash == before.hash);
+    written("hashed.csv", map + "b,2,1\nb,2,3\n");
+    const Scenario after = read();
+    CHECK(after.canonical_json == before.canonical_json);
+    CHECK(after.hash != before.hash);
+    CHECK(after.files[0].second != before.files[0].second);
 }

@@ -14,10 +14,12 @@ from matplotlib.path import Path
 
 from talus_lab.run import JOINT_STATES, Run, placed
 
+OPEN = JOINT_STATES.index("open")
+LIGHT = 0.01  # of the mean contact force
 EDGE = "#262626"
 HELD = dict(facecolor="#d9d9d9", edgecolor="#8c8c8c", hatch="////")
 # Okabe and Ito's colours, which colour-blind people can tell apart
-STATE_COLORS = dict(elastic="#9a9a9a", sliding="#d55e00", slipped="#e69f00", bonded="#0072b2", broken="#cc79a7", open="#56b4e9")
+STATE_COLORS = dict(elastic="#9a9a9a", sliding="#d55e00", slipped="#e69f00", bonded="#0072b2", broken="#cc79a7")
 NAME_COLORS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000")
 PALE_COLORS = ("#e8dcc4", "#c9d8e6", "#d6e4c8", "#ead1dc", "#d9d2e9", "#f4e3b2", "#cfe5e2")
 
@@ -97,28 +99,65 @@ def held_handle() -> Patch:
 
 
 def draw_joints(ax: Axes, run: Run, geometry: Geometry, by: str) -> list[Line2D]:
-    """Contacts as lines along the joint, coloured by `state` or by the `name` of the joint. Returns the legend's entries."""
+    """Contacts as lines along the joint, coloured by `state` or by the `name` of the joint; not those that are open: they have
+    no length, and gaps show by themselves. Returns the legend's entries."""
     contacts = run.contacts(geometry.frame)
     if not contacts or not len(contacts["x"]):
         return []
     if by == "state":
-        kind, names, colors = contacts["state"], JOINT_STATES, list(STATE_COLORS.values())
+        kind, names, colors = shown_state(contacts), JOINT_STATES, list(STATE_COLORS.values())
     else:
         kind, names = contacts["joint"], run.joint_names
         colors = [NAME_COLORS[k % len(NAME_COLORS)] for k in range(len(names))]
     along = np.column_stack([-contacts["ny"], contacts["nx"]]) * (contacts["length"] / 2)[:, None]
+    middles = _middles(run, geometry.frame, contacts)
     handles, wide = [], width(ax, run, 0.08, 0.5, 2.2)
     for k, (name, color) in enumerate(zip(names, colors)):
-        rows = kind == k
+        rows = (kind == k) & (contacts["state"] != OPEN)
         if not rows.any():
             continue
-        middle, half, block = _points(contacts)[rows], along[rows], contacts["block_a"][rows]
+        middle, half, block = middles[rows], along[rows], contacts["block_a"][rows]
         ends = [geometry.carried(middle + sign * half, block) for sign in (-1, 1)]
         plain = by == "state" and name == "elastic"  # the usual case stays in the background
         _add(ax, LineCollection(np.stack(ends, axis=1), colors=color, linewidths=0.4 * wide if plain else wide,
                                          zorder=3 if plain else 4))
         handles.append(Line2D([], [], color=color, linewidth=2.2, label=f"{name} ({rows.sum()})"))
     return handles
+
+
+def _middles(run: Run, frame: int, contacts) -> np.ndarray:
+    """[n, 2] m: middles of the stretches along which contacts touch. The point of a contact is its centre of pressure, which
+    lies beside the middle where the stress is uneven: the line is moved until it lies between the ends of both parts."""
+    point = _points(contacts)
+    along = np.column_stack([-contacts["ny"], contacts["nx"]]).astype(float)
+    start = run.corners(frame)
+    after = np.arange(len(start)) + 1
+    after[run.first_corner[1:] - 1] = run.first_corner[:-1]
+    edge = start[after] - start
+    outward = np.column_stack([edge[:, 1], -edge[:, 0]]) / np.hypot(*edge.T)[:, None]
+    low, high = np.full(len(point), -np.inf), np.full(len(point), np.inf)
+    for part in (contacts["part_a"], contacts["part_b"]):
+        count = np.diff(run.first_corner)[part]
+        row = np.repeat(np.arange(len(part)), count)
+        k = np.arange(len(row)) + np.repeat(run.first_corner[part] - np.cumsum(count) + count, count)
+        slope = np.sum(outward[k] * along[row], axis=1)
+        across = np.abs(slope) > 0.1  # the edge that touches runs along the joint and ends nothing
+        end = np.sum(outward[k] * (start[k] - point[row]), axis=1)[across] / slope[across]
+        up = slope[across] > 0
+        np.minimum.at(high, row[across][up], end[up])
+        np.maximum.at(low, row[across][~up], end[~up])
+    half = np.minimum(contacts["length"], high - low) / 2
+    return point + along * np.clip(0.0, low + half, high - half)[:, None]
+
+
+def shown_state(contacts) -> np.ndarray:
+    """States for a picture: contacts that carry next to nothing tremble about zero and count as slipped, not as sliding. The
+    limit is that of the summary of `talus run`."""
+    force = np.hypot(contacts["normal_force"], contacts["shear_force"])
+    touching = contacts["state"] != OPEN
+    light = force <= LIGHT * (force[touching].mean() if touching.any() else 0.0)
+    sliding, slipped = JOINT_STATES.index("sliding"), JOINT_STATES.index("slipped")
+    return np.where(light & (contacts["state"] == sliding), slipped, contacts["state"])
 
 
 def draw_forces(ax: Axes, run: Run, geometry: Geometry) -> list[Line2D]:
@@ -156,19 +195,20 @@ def mark(ax: Axes, points: np.ndarray, label: str) -> list[Line2D]:
 
 
 def prefix(value: float, unit: str) -> tuple[float, str]:
-    """Factor and unit with which a value reads well: 2.5e-3 m -> (1e3, 'mm')."""
+    """Factor and unit with which a value reads well: 2.5e-3 m -> (1e3, 'mm'). Times are in s down to a tenth of it."""
     steps: Sequence[tuple[float, str]] = [(1e9, "G"), (1e6, "M"), (1e3, "k"), (1, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n")]
-    if unit in ("m", "m/s", "deg"):
+    if unit in ("m", "m/s", "s", "deg"):
         steps = steps[3:] if unit != "deg" else [(1, "")]
+    rounded = abs(float(f"{value:.4g}"))  # 0.99999 s is 1 s, not 1000 ms
     for size, letter in steps:
-        if abs(value) >= size:
+        if rounded >= (0.1 if unit == "s" and size == 1 else size):
             return 1 / size, letter + unit
     return 1.0, unit
 
 
-def quantity(value: float, unit: str) -> str:
+def quantity(value: float, unit: str, digits: int = 3) -> str:
     factor, unit = prefix(value, unit)
-    return f"{value * factor:.3g} {unit}"
+    return f"{float(f'{value * factor:.{digits}g}'):.12g} {unit}"  # 1200, not 1.2e+03
 
 
 def _add(ax: Axes, collection: Collection) -> None:

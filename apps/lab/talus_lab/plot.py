@@ -17,12 +17,14 @@ from talus_lab import layers
 from talus_lab.layers import Geometry
 from talus_lab.run import Run
 
-COLORS = ("displacement", "velocity", "rotation", "joint_state", "material", "none")
+MOTIONS = ("displacement", "velocity", "rotation")
+COLORS = (*MOTIONS, "joint_state", "material", "none")
 PLAIN = "#ece7dc"
 MOVED = LinearSegmentedColormap.from_list("moved", matplotlib.colormaps["YlGnBu"](np.linspace(0.03, 0.88, 256)))
 STYLE = {"font.size": 9, "font.family": "sans-serif", "axes.linewidth": 0.6, "axes.edgecolor": "#808080", "hatch.linewidth": 0.5,
          "xtick.color": "#404040", "ytick.color": "#404040", "legend.frameon": False, "legend.fontsize": 8.5,
          "figure.facecolor": "white", "axes.facecolor": "white", "svg.fonttype": "none"}
+STILL = 1e-10  # of the size of a block (per s), of a radian: what moves less has not moved
 THIN = 0.05  # of the side of a mean block: blocks thinner than this govern the time step and deserve a look
 
 
@@ -47,7 +49,8 @@ def picture(run: Run, frame: int = -1, color: str = "displacement", forces: bool
             layers.draw_blocks(ax, run, geometry, _same(run, PLAIN) if blank else colors)
             own = layers.draw_joints(ax, run, geometry, "state") if joints else []
             own += layers.draw_forces(ax, run, geometry) if forces else []
-            ax.set_title(_moment(run, geometry), loc="left", fontsize=9, color="#404040")
+            still = color in MOTIONS and mappable is None
+            ax.set_title(_moment(run, geometry) + " · nothing moves" * still, loc="left", fontsize=9, color="#404040")
         if mappable is not None:
             figure.colorbar(mappable, ax=axes, shrink=0.8, aspect=28, pad=0.015, use_gridspec=False).set_label(label)
         _finish(figure, run, handles + own)
@@ -88,15 +91,17 @@ def _block_colors(run: Run, frame: int, color: str) -> tuple[np.ndarray, ScalarM
     if color in ("none", "joint_state"):
         return _same(run, PLAIN), None, ""
     if color == "rotation":
-        values, unit, cmap = np.degrees(run.rotation(frame)), "deg", "PuOr"
+        values, unit, cmap, scale = np.degrees(run.rotation(frame)), "deg", "PuOr", 60.0
     elif color == "velocity":
-        values, unit, cmap = np.hypot(*run.velocity(frame).T), "m/s", MOVED
+        values, unit, cmap, scale = np.hypot(*run.velocity(frame).T), "m/s", MOVED, layers.block_size(run)
     else:
-        values, unit, cmap = np.hypot(*run.displacement(frame).T), "m", MOVED
+        values, unit, cmap, scale = np.hypot(*run.displacement(frame).T), "m", MOVED, layers.block_size(run)
     shown = ~run.blocks["held"].astype(bool) & ~run.removed(frame)
     largest = float(np.abs(values[shown]).max(initial=0.0))
+    if largest <= STILL * scale:  # rounding only: its pattern means nothing
+        return _same(run, PLAIN), None, ""
     factor, unit = layers.prefix(largest, unit)
-    top = largest * factor or 1.0
+    top = largest * factor
     mappable = ScalarMappable(Normalize(-top if color == "rotation" else 0.0, top), cmap)
     return mappable.to_rgba(values * factor), mappable, f"{color} in {unit}"
 
@@ -124,6 +129,7 @@ def _page(run: Run, geometries: list[Geometry]) -> tuple[Figure, list[Axes]]:
     for ax in axes:
         ax.set(aspect="equal", xlim=(low[0] - margin, high[0] + margin), ylim=(low[1] - margin, high[1] + margin), xlabel="x in m")
         ax.tick_params(width=0.5, length=3)
+        ax.ticklabel_format(useOffset=False, style="plain")  # map coordinates in full: whoever reads them looks there
         ax.spines[["top", "right"]].set_visible(False)
     axes[0].set_ylabel("y in m")
     return figure, list(axes)
@@ -135,7 +141,8 @@ def _seen(run: Run, geometry: Geometry) -> np.ndarray:
 
 
 def _moment(run: Run, geometry: Geometry) -> str:
-    words = [f"t = {layers.quantity(run.times[geometry.frame], 's')}", f"{run.block_count:,} blocks"]
+    shown = run.block_count - int(run.removed(geometry.frame).sum())
+    words = [f"t = {layers.quantity(run.times[geometry.frame], 's', 4)}", f"{shown:,} blocks"]
     if geometry.exaggerate != 1:
         words.append(f"movements drawn {geometry.exaggerate:g} times as large")
     if run.status not in ("", "complete"):

@@ -48,9 +48,9 @@ def write_result(path: Path, frames: int = 3) -> Path:
         talus["energies/kinetic"] = np.array([0.0, 1.0, 2.0])
         talus["histories/slide/time"], talus["histories/slide/x"], talus["histories/slide/a"] = TIMES, SLIDE, TIMES
         talus["histories/slide"].attrs["columns"] = np.array(["x", "a"], "S1")
-        columns = dict(block_a=[0, 0, 0], block_b=[1, 1, 2], joint=[0, 0, 1], x=[0.0, 0.1, 3.0], y=[0.0, 0.0, 0.0], nx=[0, 0, 0],
-                       ny=[1, 1, 1], normal_force=[10.0, 20.0, 30.0], shear_force=[0.0, 5.0, 0.0], length=[1.0, 1.0, 2.0],
-                       state=[0, 1, 5])
+        columns = dict(block_a=[0, 0, 0], block_b=[1, 1, 2], part_a=[0, 0, 0], part_b=[1, 1, 2], joint=[0, 0, 1],
+                       x=[0.0, 0.1, 3.0], y=[0.0, 0.0, 0.0], nx=[0, 0, 0], ny=[1, 1, 1], normal_force=[10.0, 20.0, 30.0],
+                       shear_force=[0.0, 5.0, 0.0], length=[1.0, 1.0, 2.0], state=[0, 1, 5])
         for name, column in columns.items():
             talus[f"contacts/{name}"] = np.array(column, np.uint8 if name == "state" else None)
         talus["contacts/first_row"], talus["contacts/row_count"] = np.array([0, 0, 1]), np.array([0, 1, 2])

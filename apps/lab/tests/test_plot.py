@@ -42,9 +42,34 @@ def test_edges_inside_a_block_are_not_drawn(result):
 
 def test_joint_states_are_drawn_along_the_joint_and_named(result):
     figure = plot.picture(talus_lab.open(result), color="joint_state")
-    assert legend(figure) == ["held", "sliding (1)", "open (1)"]
+    assert legend(figure) == ["held", "sliding (1)"]  # the open one has no length
     sliding = lines(figure)[1].get_segments()[0] - ORIGIN
-    assert np.sort(sliding[:, 0]) == pytest.approx([-0.4, 0.6]) and sliding[:, 1] == pytest.approx([0, 0])
+    # The square stands on -0.1 .. 0.9; the centre of pressure, at 0.1, is not the middle of the joint.
+    assert np.sort(sliding[:, 0]) == pytest.approx([-0.1, 0.9]) and sliding[:, 1] == pytest.approx([0, 0])
+
+
+def test_a_contact_that_carries_next_to_nothing_does_not_count_as_sliding(result):
+    run = talus_lab.open(result)
+    contacts = dict(run.contacts(-1))
+    contacts["normal_force"] = contacts["normal_force"] * np.where(contacts["state"] == 1, 1e-6, 1)
+    contacts["shear_force"] = contacts["shear_force"] * np.where(contacts["state"] == 1, 1e-6, 1)
+    assert list(layers.shown_state(run.contacts(-1))).count(1) == 1
+    contacts["normal_force"] = np.append(contacts["normal_force"], 100.0)
+    contacts["shear_force"] = np.append(contacts["shear_force"], 0.0)
+    contacts["state"] = np.append(contacts["state"], 0)
+    assert list(layers.shown_state(contacts)).count(1) == 0
+
+
+def test_rounding_errors_are_no_movement(result):
+    run = talus_lab.open(result)
+    figure = plot.picture(run, frame=0)
+    assert len(figure.axes) == 1 and "nothing moves" in figure.axes[0].get_title(loc="left")
+
+
+def test_map_coordinates_stand_in_full_at_the_axes(result):
+    figure = plot.picture(talus_lab.open(result))
+    figure.canvas.draw()
+    assert figure.axes[0].xaxis.get_offset_text().get_text() == ""
 
 
 def test_the_largest_force_has_the_widest_line(result):
@@ -77,7 +102,9 @@ def test_a_scene_shows_materials_supports_and_joints(result):
 def test_units_read_well():
     assert layers.quantity(0.0025, "m") == "2.5 mm"
     assert layers.quantity(1.2345e6, "N") == "1.23 MN"
-    assert layers.quantity(1500, "m") == "1.5e+03 m"
+    assert layers.quantity(1500, "m") == "1500 m"
+    assert layers.quantity(0.999996, "s", 4) == "1 s"
+    assert layers.quantity(0.25, "s") == "0.25 s" and layers.quantity(0.025, "s") == "25 ms"
     assert layers.quantity(0, "s") == "0 s"
 
 
