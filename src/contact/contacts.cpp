@@ -32,22 +32,35 @@ private:
 
 void make_incidence(const Model& model, const Contacts& contacts, ContactIndex& index) {
     const int nb = model.blocks.size(), n = static_cast<int>(contacts.list.size());
-    index.first_of_a.assign(nb + 1, 0);
     index.first.assign(nb + 1, 0);
     index.entry.resize(2 * static_cast<std::size_t>(n));
     for (const Contact& c : contacts.list) {
-        ++index.first_of_a[model.parts.block[c.part_a] + 1];
         ++index.first[model.parts.block[c.part_a] + 1];
         ++index.first[model.parts.block[c.part_b] + 1];
     }
-    for (int b = 0; b < nb; ++b) {
-        index.first_of_a[b + 1] += index.first_of_a[b];
-        index.first[b + 1] += index.first[b];
-    }
+    for (int b = 0; b < nb; ++b) index.first[b + 1] += index.first[b];
     std::vector<int> place(index.first.begin(), index.first.end() - 1);
     for (int i = 0; i < n; ++i) {
         index.entry[place[model.parts.block[contacts.list[i].part_a]]++] = 2 * i;
         index.entry[place[model.parts.block[contacts.list[i].part_b]]++] = 2 * i + 1;
+    }
+}
+
+// Idle places in `idle`, the others are alive.
+void make_chunks(const Model& model, const Contacts& contacts, std::span<const Idle> idle, ContactIndex& index) {
+    constexpr int blocks_per_chunk = 256;  // fixed, so that sums do not depend on the number of threads
+    const int n = static_cast<int>(contacts.list.size());
+    index.chunks.assign((model.blocks.size() + blocks_per_chunk - 1) / blocks_per_chunk, {n, n, {}, {}});
+    auto next_idle = idle.begin();
+    for (int i = 0; i < n; ++i) {
+        const int k = model.parts.block[contacts.list[i].part_a] / blocks_per_chunk;
+        ContactIndex::Chunk& chunk = index.chunks[k];
+        chunk.begin = std::min(chunk.begin, i);
+        chunk.end = i + 1;
+        if (next_idle != idle.end() && next_idle->slot == i)
+            chunk.idle.push_back(*next_idle++);
+        else
+            chunk.alive.push_back(i);
     }
 }
 
@@ -65,15 +78,14 @@ void refresh_contacts(const Model& model, const Placed& placed, std::span<const 
     const Movable movable(model, state);
     std::vector<Contact> list;
     std::vector<Reaction> reaction;
+    std::vector<Idle> idle;
     index.skin = skin;
-    index.idle.clear();
     std::size_t i = 0;
     const auto keep = [&](std::size_t k) {
         const Contact& c = old.list[k];
         if (!c.alive || !movable(c.part_a, c.part_b)) return;
         list.push_back(c);
         reaction.push_back(old.reaction[k]);
-        index.idle.emplace_back();
     };
     for (const Pair& pair : pairs) {
         while (i < old.list.size() && key_less(old.list[i], pair)) keep(i++);
@@ -89,17 +101,18 @@ void refresh_contacts(const Model& model, const Placed& placed, std::span<const 
         if (separate.distance >= -touch_depth(model, pair.a, pair.b))
             apart = keep_apart(model, placed, pair.a, pair.b, separate, skin);
         if (apart.never) continue;
+        idle.push_back(apart.idle);
+        idle.back().slot = static_cast<int>(list.size());
         list.push_back(Contact{pair.a, pair.b, model.joint_between(pair.a, pair.b)});
         reaction.emplace_back();
-        index.idle.push_back(apart.idle);
     }
     while (i < old.list.size()) keep(i++);
     list.shrink_to_fit();
     reaction.shrink_to_fit();
-    index.idle.shrink_to_fit();
     state.contacts.list = std::move(list);
     state.contacts.reaction = std::move(reaction);
     make_incidence(model, state.contacts, index);
+    make_chunks(model, state.contacts, idle, index);
 }
 
 void sum_contacts(const Model& model, const Contacts& contacts, const ContactIndex& index, std::span<Force> load) {

@@ -17,23 +17,29 @@
 
 namespace talus {
 
-/// Why a place in the list carries nothing: an edge that kept its two parts apart when they were looked at last. A hint that
-/// saves time and cannot change a result, because it is tested before it is believed.
+/// A place in the list that carries nothing, and an edge that kept its two parts apart when they were looked at last: a hint
+/// that saves time and cannot change a result, because it is tested before it is believed.
 struct Idle {
-    int edge = -1;  // global corner index; -1 = alive or not known
-    int corner =
-        -1;  // of the other part, nearest to that edge; -1 = another one may become the nearest until the next refresh
+    int slot = -1;  // in the list
+    int edge = -1;  // global corner index; -1 = not known
+    // The corners of the other part that can come nearest to that edge until the next refresh; mostly two, for joints run on
+    // beyond a corner and blocks that meet there have an edge in line. -1 = there are more.
+    int corner = -1, other_corner = -1;
     BlockId block_of_edge = -1, block_of_corner = -1;
     double touch_depth = 0.0;  // m, see touch_depth()
 };
 
-/// Scratch: follows from the list, which changes only at a refresh.
+/// Scratch: follows from the list.
 struct ContactIndex {
-    std::vector<int> first_of_a;  // [nb+1] contacts whose block a is b: [first_of_a[b], first_of_a[b+1])
-    std::vector<int> first;       // [nb+1] entries of block b: [first[b], first[b+1]) of `entry`
-    std::vector<int> entry;       // 2 x contact + side (0 = block is a, 1 = block is b), in key order
-    std::vector<Idle> idle;       // [n]
-    double skin = 0.0;            // m, how far every point of a block stays from where it was at the refresh, per axis
+    struct Chunk {  // contacts [begin, end) of the list: those whose block a is one of a few neighbouring numbers
+        int begin, end;
+        std::vector<int> alive;  // slots, ascending
+        std::vector<Idle> idle;  // all others, ascending
+    };
+    std::vector<Chunk> chunks;
+    std::vector<int> first;  // [nb+1] entries of block b: [first[b], first[b+1]) of `entry`
+    std::vector<int> entry;  // 2 x contact + side (0 = block is a, 1 = block is b), in key order
+    double skin = 0.0;       // m, how far every point of a block stays from where it was at the refresh, per axis
 };
 
 /// m: how far apart two parts may be before their contact forgets.

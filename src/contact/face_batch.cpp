@@ -22,7 +22,8 @@ namespace {
         joint.tan_dilation = q.tan_dilation[i], joint.dilation_cutoff_slip = q.dilation_cutoff_slip[i];
 
         const Window w = face_window(f);
-        const Closure closure = closure_of(w, {q.s0[i], q.s1[i], q.sigma0[i] / joint.kn, q.sigma1[i] / joint.kn});
+        const double softness = 1.0 / joint.kn;
+        const Closure closure = closure_of(w, {q.s0[i], q.s1[i], q.sigma0[i] * softness, q.sigma1[i] * softness});
         FaceIntegral sum;
         sum.positive(w.lo, w.hi, closure.lo, closure.hi);
         Pressed p = pressed_face(f, w, closure, sum, 0.0, false, false);

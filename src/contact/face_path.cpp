@@ -34,35 +34,9 @@ void walk(const Window& w, const Closure& closure, const FaceMemory* memory, Vis
     if (face1 < w.hi) visit(face1, w.hi, at(face1), closure.hi, -1);
 }
 
-double outer(const PlacedPart& part, int k) { return part.internal[k] ? 0.0 : 1.0; }
-
 InitialClosure initial_of(const FaceMemory* memory) { return memory ? memory->initial : InitialClosure{}; }
 
 }  // namespace
-
-FaceLines face_lines(const PlacedPart& a, const PlacedPart& b, double dx, double dy, int ea, int eb) {
-    const int a_next = a.next(ea), b_next = b.next(eb);
-    const Vec2 &a0 = a.arm(ea), &a1 = a.arm(a_next), &b1 = b.arm(eb), &b0 = b.arm(b_next);
-    const Vec2 &na = a.normal(ea), &nb = b.normal(eb);
-    return {a0.x(),
-            a0.y(),
-            a1.x(),
-            a1.y(),
-            na.x(),
-            na.y(),
-            b0.x(),
-            b0.y(),
-            b1.x(),
-            b1.y(),
-            nb.x(),
-            nb.y(),
-            dx,
-            dy,
-            outer(a, a.previous(ea)),
-            outer(a, a_next),
-            outer(b, b_next),
-            outer(b, b.previous(eb))};
-}
 
 FaceContact face_contact(const PlacedPart& a, const PlacedPart& b, double dx, double dy, int ea, int eb,
                          const FaceMemory* memory) {

@@ -23,7 +23,30 @@ struct FaceContact {
     double largest_pull = 0.0;  // m, over the intact cells: tension / kn at the end where it is largest
 };
 
-FaceLines face_lines(const PlacedPart& a, const PlacedPart& b, double dx, double dy, int ea, int eb);
+inline FaceLines face_lines(const PlacedPart& a, const PlacedPart& b, double dx, double dy, int ea, int eb) {
+    const int a_next = a.next(ea), b_next = b.next(eb);
+    const Vec2 &a0 = a.arm(ea), &a1 = a.arm(a_next), &b1 = b.arm(eb), &b0 = b.arm(b_next);
+    const Vec2 &na = a.normal(ea), &nb = b.normal(eb);
+    const auto outer = [](const PlacedPart& part, int k) { return part.internal[k] ? 0.0 : 1.0; };
+    return {a0.x(),
+            a0.y(),
+            a1.x(),
+            a1.y(),
+            na.x(),
+            na.y(),
+            b0.x(),
+            b0.y(),
+            b1.x(),
+            b1.y(),
+            nb.x(),
+            nb.y(),
+            dx,
+            dy,
+            outer(a, a.previous(ea)),
+            outer(a, a_next),
+            outer(b, b_next),
+            outer(b, b.previous(eb))};
+}
 
 /// Contact along edge ea of A and edge eb of B. `invalid` when the edges are more than 5 degrees from anti-parallel or when
 /// the window in which they face each other is not long against the overlap: then corners matter and the general law must

@@ -74,9 +74,9 @@ constexpr double slender = 16.0;             // window / overlap: below, the cel
 struct InitialClosure {
     double s0 = 0.0, s1 = 1.0, at_s0 = 0.0, at_s1 = 0.0;
 
+    [[gnu::always_inline]] double slope() const { return (at_s1 - at_s0) / (s1 - s0); }
     [[gnu::always_inline]] double operator()(double s) const {
-        const double along = std::min(std::max(s, s0), s1);
-        return at_s0 + (at_s1 - at_s0) * ((along - s0) / (s1 - s0));
+        return at_s0 + slope() * (std::min(std::max(s, s0), s1) - s0);
     }
 };
 
@@ -97,10 +97,10 @@ struct FaceIntegral {
     [[gnu::always_inline]] void full(double s0, double s1, double d0, double d1) {
         const double l = s1 - s0;
         force += 0.5 * l * (d0 + d1);
-        moment += l * (s0 * (2.0 * d0 + d1) + s1 * (d0 + 2.0 * d1)) / 6.0;
+        moment += l * (s0 * (2.0 * d0 + d1) + s1 * (d0 + 2.0 * d1)) * (1.0 / 6.0);
         length += l;
         first += 0.5 * l * (s0 + s1);
-        second += l * (s0 * s0 + s0 * s1 + s1 * s1) / 3.0;
+        second += l * (s0 * s0 + s0 * s1 + s1 * s1) * (1.0 / 3.0);
     }
     /// Adds the part of it where the closure is > 0; at one end at least it must be.
     [[gnu::always_inline]] void positive(double s0, double s1, double d0, double d1) {

@@ -1,7 +1,6 @@
 #include "contact/idle.hpp"
 
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 namespace talus {
@@ -15,18 +14,18 @@ Apart keep_apart(const Model& model, const Placed& placed, PartId a, PartId b, c
     // A corner can come nearer to the line by what both blocks move, and by what the line turns about its own block.
     const double both = 2.0 * std::numbers::sqrt2 * reach, turn = reach / model.blocks.radius[block_by];
 
-    Apart apart{{edge, -1, block_by, block_other, touch_depth(model, a, b)}, true};
-    double nearest = std::numeric_limits<double>::infinity();
+    Idle idle{.edge = edge, .block_of_edge = block_by, .block_of_corner = block_other};
+    idle.touch_depth = touch_depth(model, a, b);
     int within_reach = 0;
     for (int k = model.parts.first_corner[other]; k < model.parts.first_corner[other + 1]; ++k) {
         const Vec2 from_edge_block = placed.corner[k].arm + d;
         const double distance = n.dot(from_edge_block) - model.corners.offset[edge];
-        if (distance < nearest) nearest = distance, apart.idle.corner = k;
-        within_reach += distance <= both + turn * (from_edge_block.norm() + both);
+        if (distance > both + turn * (from_edge_block.norm() + both)) continue;
+        (++within_reach == 1 ? idle.corner : idle.other_corner) = k;
     }
-    apart.never = within_reach == 0;
-    if (within_reach > 1) apart.idle.corner = -1;
-    return apart;
+    if (within_reach == 1) idle.other_corner = idle.corner;
+    if (within_reach > 2) idle.corner = idle.other_corner = -1;
+    return {idle, within_reach == 0};
 }
 
 }  // namespace talus

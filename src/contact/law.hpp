@@ -55,8 +55,8 @@ struct ShearResult {
 /// shear work = stored + dissipated + released exactly.
 [[gnu::always_inline]] inline ShearResult mohr_coulomb(const JointLaw& joint, const ShearStep& step, ShearMemory& c) {
     ShearResult result;
-    const double stiffness = joint.ks * step.length;
-    const double energy_if_even = 0.5 * c.force * c.force / stiffness;  // sheared over the whole length
+    const double stiffness = joint.ks * step.length, softness = 1.0 / stiffness;
+    const double energy_if_even = 0.5 * c.force * c.force * softness;  // sheared over the whole length
     const double share = energy_if_even > c.energy ? c.energy / energy_if_even : 1.0;
     const double before = c.force * share, energy = c.energy * share;
     result.released = c.energy * (1.0 - share);
@@ -86,12 +86,11 @@ struct ShearResult {
     const double dilation = joint.tan_dilation * std::min(std::abs(slip_sum), joint.dilation_cutoff_slip);
     const double lift = dilation - c.dilation;
     // Slip evens the stress out: a contact that slides is sheared over its whole length. What lifts the block is not lost.
-    const double slid_energy = 0.5 * slid_force * slid_force / stiffness;
+    const double slid_energy = 0.5 * slid_force * slid_force * softness;
     const double slid_work = energy - slid_energy - 0.5 * (before + slid_force) * step.displacement -
                              lift * (step.normal_force + 0.5 * joint.kn * step.length * lift);
     // If it sticks:
-    const double held_energy =
-        std::max(energy - 0.5 * (before + trial) * step.displacement, 0.5 * trial * trial / stiffness);
+    const double held_energy = std::max(energy - 0.5 * (before + trial) * step.displacement, 0.5 * trial * trial * softness);
     const double held_dashpot = std::abs(trial + step.dashpot) <= result.strength ? step.dashpot : 0.0;
 
     result.friction = lost_work + (result.sliding ? slid_work : 0.0);

@@ -13,7 +13,6 @@
 namespace talus {
 namespace {
 
-constexpr int chunk = 256;  // blocks per task; fixed, so that sums do not depend on the number of threads
 // Edges that meet at less than 10 degrees may not use the face path: which of them is in contact would depend on history.
 constexpr double smooth_cos = 0.985;
 
@@ -23,29 +22,41 @@ struct Work {  // of one chunk of blocks, J
 
 class Evaluator {
 public:
-    Evaluator(const Model& model, const Placed& placed, double dt, State& state, ContactIndex& index, FaceKernel kernel)
+    Evaluator(const Model& model, const Placed& placed, double dt, State& state, const ContactIndex& index,
+              FaceKernel kernel)
         : model_(model),
           placed_(placed),
           dt_(dt),
           damping_(dt > 0.0 ? model.contact_damping : 0.0),
           contacts_(state.contacts),
           index_(index),
-          kernel_(kernel) {}
+          kernel_(kernel) {
+        for (int k = 0; k < FaceBatch::size; ++k) {
+            batch_.a_lo[k] = batch_.a_hi[k] = batch_.b_lo[k] = batch_.b_hi[k] = 1.0;
+            joint_of_column_[k] = -1;
+            set_memory(k, -1);
+        }
+    }
 
-    /// Contacts [begin, end) of the list.
-    void operator()(int begin, int end, Work& work) {
+    void operator()(ContactIndex::Chunk& chunk, Work& work) {
         work_ = &work;
-        for (int i = begin; i < end; ++i) {
-            const Idle& idle = index_.idle[i];
+        changed_ = false;
+        for (Idle& idle : chunk.idle) {
             if (idle.corner >= 0 && still_apart(model_, placed_, idle)) continue;
-            const Contact& c = contacts_.list[i];
-            if (idle.edge >= 0 && edge_separates(c, idle.edge)) continue;
-            if (plain_face(c))
+            if (idle.edge >= 0 && edge_separates(contacts_.list[idle.slot], idle.edge)) continue;
+            evaluate(idle.slot);
+            if (!contacts_.list[idle.slot].alive) look_for_edge(idle);
+        }
+        for (std::size_t j = 0; j < chunk.alive.size(); ++j) {
+            const int i = chunk.alive[j];
+            if (j + ahead < chunk.alive.size()) fetch(chunk.alive[j + ahead]);
+            if (plain_face(contacts_.list[i]))
                 collect(i);
             else
                 evaluate(i);
         }
         flush();
+        if (changed_) sort(chunk);
     }
 
 private:
@@ -76,10 +87,35 @@ private:
                                      : separation_by_edge(s.b, edge - s.b.first, s.a, -s.dx, -s.dy);
         return distance >= -touch_depth(model_, c.part_a, c.part_b);
     }
-    // Since the refresh both blocks may have moved by the skin, and may move back as far on the other side.
-    void rest(int i, const Separation& apart) {
-        const Contact& c = contacts_.list[i];
-        index_.idle[i] = keep_apart(model_, placed_, c.part_a, c.part_b, apart, 2.0 * index_.skin).idle;
+    // Contacts lie further apart than the processor looks ahead on its own.
+    static constexpr std::size_t ahead = 8;
+    void fetch(int i) const {
+        const char* contact = reinterpret_cast<const char*>(&contacts_.list[i]);
+        for (std::size_t line = 0; line < sizeof(Contact); line += 64) __builtin_prefetch(contact + line, 1);
+        __builtin_prefetch(&contacts_.reaction[i], 1);
+    }
+
+    void look_for_edge(Idle& idle) const {
+        const Contact& c = contacts_.list[idle.slot];
+        const Couple s = couple(c);
+        const Separation apart = separation(s.a, s.b, s.dx, s.dy);
+        // Since the refresh both blocks may have moved by the skin, and may move back as far on the other side.
+        const int slot = idle.slot;
+        idle = keep_apart(model_, placed_, c.part_a, c.part_b, apart, 2.0 * index_.skin).idle;
+        idle.slot = slot;
+    }
+    // After contacts have begun or ended.
+    void sort(ContactIndex::Chunk& chunk) const {
+        const std::vector<Idle> known = std::exchange(chunk.idle, {});
+        auto next = known.begin();
+        chunk.alive.clear();
+        for (int i = chunk.begin; i < chunk.end; ++i) {
+            while (next != known.end() && next->slot < i) ++next;
+            if (contacts_.list[i].alive)
+                chunk.alive.push_back(i);
+            else
+                chunk.idle.push_back(next != known.end() && next->slot == i ? *next : Idle{.slot = i});
+        }
     }
 
     // ---- faces without intact bonds: many at a time
@@ -98,29 +134,40 @@ private:
         const Contact& c = contacts_.list[i];
         const Couple s = couple(c);
         const FaceLines f = face_lines(s.a, s.b, s.dx, s.dy, c.edge_a - s.a.first, c.edge_b - s.b.first);
-        const Joint& joint = model_.joints[c.joint];
         const Approach v = approach(s);
         FaceBatch& q = batch_;
         const int k = q.count++;
         q.slot[k] = i;
         q.a0x[k] = f.a0x, q.a0y[k] = f.a0y, q.a1x[k] = f.a1x, q.a1y[k] = f.a1y, q.nax[k] = f.nax, q.nay[k] = f.nay;
         q.b0x[k] = f.b0x, q.b0y[k] = f.b0y, q.b1x[k] = f.b1x, q.b1y[k] = f.b1y, q.nbx[k] = f.nbx, q.nby[k] = f.nby;
-        q.dx[k] = s.dx, q.dy[k] = s.dy, q.a_lo[k] = f.a_lo, q.a_hi[k] = f.a_hi, q.b_lo[k] = f.b_lo, q.b_hi[k] = f.b_hi;
+        q.dx[k] = s.dx, q.dy[k] = s.dy;
+        if (!convex_) q.a_lo[k] = f.a_lo, q.a_hi[k] = f.a_hi, q.b_lo[k] = f.b_lo, q.b_hi[k] = f.b_hi;
         q.vax[k] = v.vax, q.vay[k] = v.vay, q.spin_a[k] = v.spin_a, q.vbx[k] = v.vbx, q.vby[k] = v.vby;
         q.spin_b[k] = v.spin_b;
+        if (c.joint != joint_of_column_[k]) set_joint(k, c.joint);
+        q.force[k] = c.shear_force, q.energy[k] = c.shear_energy, q.slip[k] = c.slip, q.slip_sum[k] = c.slip_sum;
+        q.dilation[k] = c.dilation, q.slipped[k] = c.slipped, q.nx[k] = c.normal.x(), q.ny[k] = c.normal.y();
+        if (c.face >= 0 || q.remembers[k] != 0.0) set_memory(k, c.face);
+        if (q.count == FaceBatch::size) flush();
+    }
+
+    void set_joint(int k, int j) {
+        const Joint& joint = model_.joints[j];
+        FaceBatch& q = batch_;
         q.kn[k] = joint.kn, q.ks[k] = joint.ks, q.tan_friction[k] = joint.tan_friction;
         q.tan_friction_residual[k] = joint.tan_friction_residual, q.cohesion_residual[k] = joint.cohesion_residual;
         q.weakens[k] = joint.weakens, q.tan_dilation[k] = joint.tan_dilation;
         q.dilation_cutoff_slip[k] = joint.dilation_cutoff_slip;
-        q.force[k] = c.shear_force, q.energy[k] = c.shear_energy, q.slip[k] = c.slip, q.slip_sum[k] = c.slip_sum;
-        q.dilation[k] = c.dilation, q.slipped[k] = c.slipped, q.nx[k] = c.normal.x(), q.ny[k] = c.normal.y();
-        q.remembers[k] = c.face >= 0, q.s0[k] = 0.0, q.s1[k] = 1.0, q.sigma0[k] = q.sigma1[k] = q.face_length[k] = 0.0;
-        if (c.face >= 0) {
-            const JointFace& face = model_.faces[c.face];
-            q.s0[k] = face.s0, q.s1[k] = face.s1, q.sigma0[k] = face.sigma0, q.sigma1[k] = face.sigma1;
-            q.face_length[k] = face.s1 - face.s0;
-        }
-        if (q.count == FaceBatch::size) flush();
+        joint_of_column_[k] = j;
+    }
+
+    void set_memory(int k, int f) {
+        FaceBatch& q = batch_;
+        q.remembers[k] = f >= 0, q.s0[k] = 0.0, q.s1[k] = 1.0, q.sigma0[k] = q.sigma1[k] = q.face_length[k] = 0.0;
+        if (f < 0) return;
+        const JointFace& face = model_.faces[f];
+        q.s0[k] = face.s0, q.s1[k] = face.s1, q.sigma0[k] = face.sigma0, q.sigma1[k] = face.sigma1;
+        q.face_length[k] = face.s1 - face.s0;
     }
 
     void flush() {
@@ -167,15 +214,14 @@ private:
         const double thicker_x = c.dilation * c.normal.x(), thicker_y = c.dilation * c.normal.y();
         shifted.dx -= thicker_x;
         shifted.dy -= thicker_y;
-        Pressed pressed = press(i, shifted);
+        Pressed pressed = press(c, shifted);
         if (!pressed.loaded()) return unload(i, s);
         pressed.torque_b -= thicker_x * pressed.fy - thicker_y * pressed.fx;  // the force acts at the true place
         load(i, s, pressed);
     }
 
     // The normal part; not loaded if the pair carries nothing. Sets the edges of the contact.
-    Pressed press(int i, const Couple& s) {
-        Contact& c = contacts_.list[i];
+    Pressed press(Contact& c, const Couple& s) {
         if (c.face >= 0) {
             const FaceContact face = remembered_face(c, s);
             if (face.state != FaceState::invalid) return face.pressed;
@@ -183,10 +229,7 @@ private:
         }
         c.edge_a = c.edge_b = -1;
         const Separation apart = separation(s.a, s.b, s.dx, s.dy);
-        if (apart.distance >= -touch_depth(model_, c.part_a, c.part_b)) {
-            if (!c.alive) rest(i, apart);
-            return {};
-        }
+        if (apart.distance >= -touch_depth(model_, c.part_a, c.part_b)) return {};
         if (model_.face_path) {
             const Vec2& n = apart.of_a ? s.a.normal(apart.edge) : s.b.normal(apart.edge);
             const int other = facing_edge(apart.of_a ? s.b : s.a, n.x(), n.y());
@@ -229,8 +272,8 @@ private:
         const Response r = respond(model_.joints[c.joint], p, approach(s), dt_, damping_, face_length(c),
                                    {c.normal.x(), c.normal.y()}, shear);
         if (r.bonds_fail) break_bonds(model_.faces[c.face]);
+        changed_ |= !c.alive;
         c.touching = c.alive = 1;
-        index_.idle[i].edge = index_.idle[i].corner = -1;
         c.sliding = r.sliding;
         c.slipped = shear.slipped != 0.0;
         c.length = p.length;
@@ -269,7 +312,7 @@ private:
             if (c.face >= 0) end_face(c);
             const PartId part_a = c.part_a, part_b = c.part_b;
             c = Contact{part_a, part_b, model_.joint_between(part_a, part_b)};
-            if (apart.distance >= -touch_depth(model_, c.part_a, c.part_b)) rest(i, apart);
+            changed_ = true;
         }
     }
 
@@ -289,24 +332,26 @@ private:
     const Placed& placed_;
     double dt_, damping_;
     Contacts& contacts_;
-    ContactIndex& index_;
+    const ContactIndex& index_;
     FaceKernel kernel_;
+    const bool convex_ = model_.parts.size() == model_.blocks.size();  // no block has an edge inside it
     FaceBatch batch_{};
+    int joint_of_column_[FaceBatch::size];
     Work* work_ = nullptr;
+    bool changed_ = false;  // a contact has begun or ended in this chunk
 };
 
 }  // namespace
 
 void update_contacts(const Model& model, const Placed& placed, double dt, State& state, ContactIndex& index) {
     static const FaceKernel kernel = face_kernel(best_vector_unit());
-    const int nb = model.blocks.size(), chunks = (nb + chunk - 1) / chunk;
+    const int chunks = static_cast<int>(index.chunks.size());
     std::vector<Work> work(chunks);
 #pragma omp parallel
     {
         Evaluator evaluate(model, placed, dt, state, index, kernel);
 #pragma omp for schedule(dynamic)
-        for (int k = 0; k < chunks; ++k)
-            evaluate(index.first_of_a[k * chunk], index.first_of_a[std::min((k + 1) * chunk, nb)], work[k]);
+        for (int k = 0; k < chunks; ++k) evaluate(index.chunks[k], work[k]);
     }
     for (const Work& w : work) {
         state.ledger.friction += w.friction;

@@ -1,5 +1,7 @@
 #include "dynamics/motion.hpp"
 
+#include "core/turn.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -62,17 +64,27 @@ void place(const Model& model, const Motion& motion, bool all, Placed& placed) {
     const int nb = model.blocks.size();
     placed.corner.resize(model.corners.arm.size());
     placed.block.resize(nb);
+    constexpr int few = 64;
 #pragma omp parallel for schedule(static)
-    for (int b = 0; b < nb; ++b) {
-        placed.block[b] = {motion.position[b], motion.velocity[b], motion.spin[b]};
-        if (!all && model.blocks.inv_inertia[b] == 0.0 && motion.spin[b] == 0.0) continue;
-        const double c = std::cos(motion.angle[b]), s = std::sin(motion.angle[b]);
-        const int begin = model.parts.first_corner[model.blocks.first_part[b]];
-        const int end = model.parts.first_corner[model.blocks.first_part[b + 1]];
-        for (int k = begin; k < end; ++k) {
-            const Vec2 &p = model.corners.arm[k], &n = model.corners.normal[k];
-            placed.corner[k] = {{c * p.x() - s * p.y(), s * p.x() + c * p.y()},
-                                {c * n.x() - s * n.y(), s * n.x() + c * n.y()}};
+    for (int begin = 0; begin < nb; begin += few) {
+        const int n = std::min(few, nb - begin);
+        double c[few], s[few];
+        for (int i = 0; i < n; ++i) {
+            const Turn now = turn(motion.angle[begin + i]);
+            c[i] = now.c;
+            s[i] = now.s;
+        }
+        for (int i = 0; i < n; ++i) {
+            const int b = begin + i;
+            placed.block[b] = {motion.position[b], motion.velocity[b], motion.spin[b]};
+            if (!all && model.blocks.inv_inertia[b] == 0.0 && motion.spin[b] == 0.0) continue;
+            const int first = model.parts.first_corner[model.blocks.first_part[b]];
+            const int last = model.parts.first_corner[model.blocks.first_part[b + 1]];
+            for (int k = first; k < last; ++k) {
+                const Vec2 &p = model.corners.arm[k], &m = model.corners.normal[k];
+                placed.corner[k] = {{c[i] * p.x() - s[i] * p.y(), s[i] * p.x() + c[i] * p.y()},
+                                    {c[i] * m.x() - s[i] * m.y(), s[i] * m.x() + c[i] * m.y()}};
+            }
         }
     }
 }

@@ -186,14 +186,13 @@ void Builder::set_initial_stress() {
         model_.boundary_loads = static_cast<int>(model_.loads.size());
     }
     prestress_ = make_faces(model_, neighbours_.touches, joint_, corner_, spec, field);
-    model_.faces = prestress_.faces;
+    model_.faces = std::move(prestress_.faces);
 }
 
 void Builder::set_state() {
     State& state = scene_.state;
     const int nb = model_.blocks.size(), rock_blocks = static_cast<int>(rock_.shapes.size());
-    state.motion = {model_.blocks.start, std::vector<double>(nb, 0.0), std::vector<Vec2>(nb, Vec2::Zero()),
-                    std::vector<double>(nb, 0.0)};
+    state = state_at_start(model_);
     for (BlockId b = rock_blocks; b < nb; ++b) {
         const BlockSpec& spec = scenario_.blocks[b - rock_blocks];
         state.motion.velocity[b] = (model_.blocks.inv_mass[b].array() > 0.0).select(spec.velocity, 0.0);
@@ -204,13 +203,8 @@ void Builder::set_state() {
         if (driven.y) state.motion.velocity[driven.block].y() = driven.velocity_y(0.0);
         if (driven.rotation) state.motion.spin[driven.block] = driven.spin(0.0);
     }
-    state.load.assign(nb, {});
-    state.removed.assign(nb, 0);
-    state.start_position = state.motion.position;
-    state.start_angle = state.motion.angle;
-    state.contacts.list = first_contacts(model_);
+    state.contacts.list = first_contacts(model_, prestress_.shear_force);
     state.contacts.reaction.assign(state.contacts.list.size(), {});
-    state.contacts.broken.assign(model_.cells(), 0);
 }
 
 void Builder::set_loads() {
@@ -252,6 +246,19 @@ std::vector<Load> make_loads(const Model& model, const State& state, const std::
             loads.push_back({b, arm, spec.force.x, spec.force.y, spec.moment});
         }
     return loads;
+}
+
+State state_at_start(const Model& model) {
+    const int nb = model.blocks.size();
+    State state;
+    state.motion = {model.blocks.start, std::vector<double>(nb, 0.0), std::vector<Vec2>(nb, Vec2::Zero()),
+                    std::vector<double>(nb, 0.0)};
+    state.load.assign(nb, {});
+    state.removed.assign(nb, 0);
+    state.start_position = state.motion.position;
+    state.start_angle = state.motion.angle;
+    state.contacts.broken.assign(model.cells(), 0);
+    return state;
 }
 
 Scene build(const Scenario& scenario) { return Builder(scenario).build(); }

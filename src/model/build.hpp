@@ -27,6 +27,9 @@ struct Scene {
 /// Throws InputError with every fault found (overlapping blocks: which and how deep; names that fit nothing; ...).
 Scene build(const Scenario& scenario);
 
+/// All blocks where they were built, at rest, no contacts: where places of the scenario are looked up.
+State state_at_start(const Model& model);
+
 /// Blocks meant by a selector, ascending; throws InputError if there is none.
 std::vector<BlockId> select(const Model& model, const State& state, const Selector& selector);
 

@@ -121,16 +121,15 @@ Prestress make_faces(const Model& model, const std::vector<Neighbours::Touch>& t
         const bool bonded = acting.tension > 0.0 || acting.cohesion > 0.0;
         if (!bonded && stress.none()) continue;
         if (beyond_strength(stress, acting)) ++all.beyond_strength;
-        const auto [from, to] = ends(model, corner, touch);
-        all.faces.push_back({touch.part_a, touch.part_b, touch.edge_a, touch.edge_b, joint[i], bonded, cells, touch.s0,
-                             touch.s1, from - model.blocks.start[b], to - model.blocks.start[b], stress.sigma0,
-                             stress.sigma1, stress.shear * (touch.s1 - touch.s0)});
+        all.faces.push_back({touch.part_a, touch.part_b, touch.edge_a, touch.edge_b, joint[i], cells, bonded, touch.s0,
+                             touch.s1, stress.sigma0, stress.sigma1});
+        all.shear_force.push_back(stress.shear * (touch.s1 - touch.s0));
         cells += acting.cells;
     }
     return all;
 }
 
-std::vector<Contact> first_contacts(const Model& model) {
+std::vector<Contact> first_contacts(const Model& model, std::span<const double> shear_force) {
     std::vector<Contact> contacts;
     for (std::size_t i = 0; i < model.faces.size(); ++i) {
         const JointFace& face = model.faces[i];
@@ -142,16 +141,15 @@ std::vector<Contact> first_contacts(const Model& model) {
         contact.face = static_cast<int>(i);
         contact.edge_a = face.edge_a;
         contact.edge_b = face.edge_b;
-        contact.touching = sum != 0.0 || face.shear_force0 != 0.0;
+        contact.touching = sum != 0.0 || shear_force[i] != 0.0;
         contact.alive = 1;
         contact.length = length;
         contact.normal_force = 0.5 * sum * length;
-        contact.shear_force = face.shear_force0;
-        contact.shear_energy =
-            0.5 * face.shear_force0 * face.shear_force0 / (model.joints[face.joint].ks * (face.s1 - face.s0));
-        contact.point =
-            model.blocks.start[model.parts.block[face.part_b]] + face.arm_b0 + share * (face.arm_b1 - face.arm_b0);
+        contact.shear_force = shear_force[i];
+        contact.shear_energy = 0.5 * shear_force[i] * shear_force[i] / (model.joints[face.joint].ks * (face.s1 - face.s0));
         contact.normal = model.corners.normal[face.edge_a];
+        contact.point = model.blocks.start[model.parts.block[face.part_a]] + model.corners.arm[face.edge_a] +
+                        (face.s0 + share * length) * perp(contact.normal);
         contacts.push_back(contact);
     }
     return contacts;

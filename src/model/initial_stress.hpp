@@ -30,9 +30,10 @@ struct StressField {
 StressField stress_field(const InitialStressSpec& spec, double rock_weight, double top);
 
 struct Prestress {
-    std::vector<JointFace> faces;  // bonded or under stress, sorted by parts, cells numbered
-    int beyond_strength = 0;       // faces whose shear or tension is more than their joint can carry
-    int tension_dropped = 0;       // faces whose joint cannot pull: tension was set to zero
+    std::vector<JointFace> faces;     // bonded or under stress, sorted by parts, cells numbered
+    std::vector<double> shear_force;  // [faces] N, on b along perp(normal a->b)
+    int beyond_strength = 0;          // faces whose shear or tension is more than their joint can carry
+    int tension_dropped = 0;          // faces whose joint cannot pull: tension was set to zero
 };
 
 /// The joint faces of a scene: one per touching pair whose joint can be bonded or that carries stress, none between two
@@ -40,8 +41,8 @@ struct Prestress {
 Prestress make_faces(const Model& model, const std::vector<Neighbours::Touch>& touches, std::span<const int> joint,
                      std::span<const Vec2> corner, const InitialStressSpec* spec, const StressField& field);
 
-/// The contacts of a scene at rest: one per joint face, with the stress it carries.
-std::vector<Contact> first_contacts(const Model& model);
+/// The contacts of a scene at rest: one per joint face, with the stress it carries. shear_force[i]: N, of face i.
+std::vector<Contact> first_contacts(const Model& model, std::span<const double> shear_force);
 
 /// Dead loads that carry the field on the sides named by `spec`, where no other block touches: one per block, constant.
 std::vector<Load> boundary_loads(const Model& model, const InitialStressSpec& spec, const StressField& field,

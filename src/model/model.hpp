@@ -62,16 +62,14 @@ struct Joint : JointLaw {
 /// A stretch along which two parts touched when the scene was built, with the stress it carried then. One per pair of parts
 /// at most, for two convex polygons share at most one line. Only faces whose joint can pull (tension, cohesion) or that were
 /// under stress are kept: all others are found like any contact.
-struct JointFace {
-    PartId part_a, part_b;  // a < b; the list of faces is sorted by them
-    int edge_a, edge_b;     // corner index (global) where the edge starts
+struct alignas(64) JointFace {  // a cache line: read at every step
+    PartId part_a, part_b;      // a < b; the list of faces is sorted by them
+    int edge_a, edge_b;         // corner index (global) where the edge starts
     int joint;
-    bool bonded;            // cells can carry tension or cohesion
     int first_cell;         // cells are [first_cell, first_cell + joint.cells) of Contacts::broken
+    bool bonded;            // cells can carry tension or cohesion
     double s0, s1;          // m, ends of the face measured along edge_a from its first corner
-    Vec2 arm_b0, arm_b1;    // m, the same two points on block b, from its centroid, unrotated
     double sigma0, sigma1;  // Pa, normal stress at s0 and s1 when built
-    double shear_force0;    // N, shear force on b along perp(normal a->b) when built
 };
 
 struct DrivenBlock {  // prescribed velocities of the axes that are driven; other axes stay as they are

@@ -1,5 +1,5 @@
-// Geometry turned to where the blocks are now. Scratch: made anew from Model and Motion at every step, and laid out so that what
-// a contact reads lies together.
+// Geometry turned to where the blocks are now. Scratch: made anew from Model and Motion at every step, and laid out so that
+// what a contact reads lies together.
 #pragma once
 
 #include "core/types.hpp"

@@ -246,8 +246,7 @@ bool fits(const State& s, const Model& model) {
     return one_per_block(s.motion.position, s.motion.angle, s.motion.velocity, s.motion.spin, s.load, s.removed,
                          s.start_position, s.start_angle) &&
            (s.release.empty() || s.release.size() == blocks) && (s.damping.empty() || s.damping.size() == blocks) &&
-           s.contacts.reaction.size() == contacts &&
-           s.contacts.broken.size() == static_cast<std::size_t>(model.cells()) &&
+           s.contacts.reaction.size() == contacts && s.contacts.broken.size() == static_cast<std::size_t>(model.cells()) &&
            std::all_of(s.contacts.list.begin(), s.contacts.list.end(), known);
 }
 

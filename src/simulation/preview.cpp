@@ -15,7 +15,6 @@ State with_all_touching_faces(const Simulation& simulation) {
     const double tolerance = 1e-9 * std::max(all.xmax - all.xmin, all.ymax - all.ymin) + 4.0 * rounding(corner);
 
     State state = simulation.first_state();
-    state.contacts.list.clear();
     for (const Neighbours::Touch& touch : find_neighbours(model, corner, tolerance).touches) {
         Contact contact{
             .part_a = touch.part_a, .part_b = touch.part_b, .joint = model.joint_between(touch.part_a, touch.part_b)};

@@ -99,11 +99,12 @@ Recorder::Recorder(const std::string& path, const Simulation& simulation, const 
 }
 
 void Recorder::add_histories(const Simulation& simulation) {
+    const State start = simulation.first_state();
     for (const HistorySpec& spec : simulation.scenario().record.history) {
         History history;
         std::vector<HistoryColumn> columns;
         for (const ProbeSpec& probe : spec.probes) {
-            history.probes.push_back(make_probe(probe, simulation.model(), simulation.first_state()));
+            history.probes.push_back(make_probe(probe, simulation.model(), start));
             columns.push_back({history.probes.back().name, history.probes.back().unit});
         }
         history.every = spec.every;
@@ -178,10 +179,11 @@ void check_probes(const Simulation& simulation) {
         probes.push_back(expect.probe);
         if (expect.against) probes.push_back(*expect.against);
     }
+    const State start = simulation.first_state();
     std::vector<Fault> faults;
     for (const ProbeSpec& probe : probes) {
         try {
-            make_probe(probe, simulation.model(), simulation.first_state());
+            make_probe(probe, simulation.model(), start);
         } catch (const InputError& error) {
             const Fault& found = error.faults().front();  // a history reads several quantities at one place: said once
             if (faults.empty() || faults.back().key != found.key || faults.back().message != found.message)

@@ -67,7 +67,6 @@ Simulation::Simulation(const Scenario& scenario, Scene scene)
       stages_(stages_of(scenario)),
       model_(std::move(scene.model)),
       state_(std::move(scene.state)),
-      first_(state_),
       report_(std::move(scene.report)),
       driven_(std::exchange(model_.driven, {})),
       search_(make_search(scenario.run.search)),

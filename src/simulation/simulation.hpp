@@ -45,7 +45,7 @@ public:
     const Scenario& scenario() const { return scenario_; }
     const Model& model() const { return model_; }
     const State& state() const { return state_; }
-    const State& first_state() const { return first_; }  // when the scene was built: where places are looked up
+    State first_state() const { return state_at_start(model_); }
     const StageSpec& stage() const { return stages_[state_.stage]; }
     int stage_count() const { return static_cast<int>(stages_.size()); }
     const StableStep& stable() const { return stable_; }
@@ -85,7 +85,7 @@ private:
     const Scenario scenario_;
     std::vector<StageSpec> stages_;  // those of the scenario and, last, `run`
     Model model_;
-    State state_, first_;
+    State state_;
     int first_recorded_ = 0;
     BuildReport report_;
     std::vector<Load> boundary_loads_;  // of initial stress: always there

@@ -102,7 +102,7 @@ cases:
             self.talus("run", f"{name}.yaml")
         for name in "ac":
             self.assert_same_results("b.h5", f"{name}.h5", apart_from=["/talus/canonical_json", "/talus/scenario"])
-        self.assertRegex(self.talus("check", "a.yaml")[0], r"1 stage, \d")
+        self.assertRegex(self.talus("check", "a.yaml")[0], r"1 stage, ")
 
     def test_search_and_threads_leave_no_trace_in_the_results(self):
         self.write("slope.yaml", SLOPE)

@@ -64,7 +64,6 @@ Model bonded_wall() {
     for (int p = 0; p + 1 < model.parts.size(); ++p) {
         JointFace face{};
         face.part_a = p, face.part_b = p + 1, face.bonded = true, face.first_cell = 3 * p;
-        face.arm_b0 = face.arm_b1 = Vec2::Zero();
         model.faces.push_back(face);
     }
     return model;

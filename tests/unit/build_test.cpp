@@ -114,11 +114,16 @@ TEST_CASE("every two bricks of a wall that share a bed or a head joint get one f
         CHECK(face.part_a < face.part_b);
         if (i > 0) CHECK(std::pair(m.faces[i - 1].part_a, m.faces[i - 1].part_b) < std::pair(face.part_a, face.part_b));
         CHECK((m.corners.normal[face.edge_a] + m.corners.normal[face.edge_b]).norm() < 1e-15);
-        // The ends on b are the same places as those on edge a.
+        // Its ends lie on edge b too.
         const Vec2 along = perp(m.corners.normal[face.edge_a]);
         const Vec2 on_a = at(m, face.part_a, face.edge_a) + face.s0 * along;
-        CHECK((m.blocks.start[m.parts.block[face.part_b]] + face.arm_b0 - on_a).norm() < 1e-14);
-        CHECK((face.arm_b1 - face.arm_b0 - (face.s1 - face.s0) * along).norm() < 1e-14);
+        const Vec2 b = at(m, face.part_b, face.edge_b);
+        CHECK(std::abs(m.corners.normal[face.edge_b].dot(on_a - b)) < 1e-14);
+        for (const double s : {face.s0, face.s1}) {
+            const double on_b = (b - (on_a + (s - face.s0) * along)).dot(along);
+            CHECK(on_b > -1e-14);
+            CHECK(on_b < m.corners.length[face.edge_b] + 1e-14);
+        }
         length += face.s1 - face.s0;
     }
     CHECK(length == Approx(4 * 4 * 1.0 + 3 * 9 * 1.0));

@@ -1,6 +1,7 @@
 #include "core/random.hpp"
 #include "core/text.hpp"
 #include "core/time_table.hpp"
+#include "core/turn.hpp"
 #include "support/catch.hpp"
 
 #include <cmath>
@@ -34,4 +35,18 @@ TEST_CASE("a place has the digits it takes to find a thing of its size, near the
     CHECK(place({465993.93551, 6691596.80163}, 0.05) == "(465993.9355, 6691596.8016)");
     CHECK(place({465993.93551, 6691596.80163}, 300.0) == "(465994, 6691597)");
     CHECK(place({465993.93551, 6691596.80163}) == "(465993.9355, 6691596.802)");
+}
+
+TEST_CASE("sine and cosine are those of the library to the last place or two, in every quarter and far from zero") {
+    Random random(5);
+    double worst = 0.0;
+    for (int i = 0; i < 200000; ++i) {
+        const double angle = (2.0 * random.uniform() - 1.0) * std::pow(10.0, 8.0 * random.uniform() - 4.0);
+        const Turn now = turn(angle);
+        worst = std::max({worst, std::abs(now.s - std::sin(angle)), std::abs(now.c - std::cos(angle))});
+    }
+    CHECK(worst < 2.3e-16);
+    CHECK(turn(0.0).c == 1.0);
+    CHECK(turn(0.0).s == 0.0);
+    CHECK(turn(1e-9).s == 1e-9);
 }

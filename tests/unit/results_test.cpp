@@ -36,7 +36,7 @@ struct OneContact {
     Joint& joint() { return model.joints[0]; }
     void bond(int cells) {
         JointFace face{};
-        face.part_b = 1, face.bonded = true, face.arm_b0 = face.arm_b1 = Vec2::Zero();
+        face.part_b = 1, face.bonded = true;
         joint().cells = cells;
         model.faces = {face};
         contact().face = 0;
