@@ -1,14 +1,13 @@
 #include "commands.hpp"
 #include "summary.hpp"
 
+#include "core/memory.hpp"
 #include "core/text.hpp"
 #include "output/output_path.hpp"
 #include "output/results.hpp"
 #include "scenario/reader.hpp"
 #include "simulation/preview.hpp"
 #include "simulation/run.hpp"
-
-#include <sys/resource.h>
 
 #include <algorithm>
 #include <array>
@@ -117,12 +116,6 @@ void print_settlement(const Simulation& simulation) {
                 closure > 1e-2 * size ? "; stiffer joints would be nearer to rock" : "");
 }
 
-double peak_memory() {
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    return 1024.0 * static_cast<double>(usage.ru_maxrss);
-}
-
 // s, the median: other work on the machine makes single steps slower, none faster.
 double time_of_a_step(Simulation& simulation) {
     std::vector<double> seconds;
@@ -179,8 +172,9 @@ void print_cost(Simulation& simulation) {
     const double bytes =
         60.0 * model.blocks.size() + 12.0 * model.corners.size() +
         (scenario.record.contacts ? 100.0 * static_cast<double>(simulation.state().contacts.list.size()) / 2 : 0.0);
-    std::printf("memory         %s now; results about %s for %.0f frames\n", number(peak_memory() / 1e6, "MB").c_str(),
-                number(frames * bytes / 1e6, "MB").c_str(), frames);
+    const MemoryUse memory = memory_use();
+    std::printf("memory         %.0f MB in the run, %.0f MB while cutting; results about %s for %.0f frames\n",
+                memory.now / 1e6, memory.peak / 1e6, number(frames * bytes / 1e6, "MB").c_str(), frames);
 }
 
 void write_geometry(const std::string& path, Simulation& simulation) {

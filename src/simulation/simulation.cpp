@@ -1,6 +1,7 @@
 #include "simulation/simulation.hpp"
 
 #include "core/errors.hpp"
+#include "core/memory.hpp"
 #include "dynamics/motion.hpp"
 
 #ifdef _OPENMP
@@ -336,6 +337,7 @@ void Simulation::begin_stage() {
     }
     state_.ledger.kinetic0 += talus::ledger_error(model_, state_, state_.stage_step);
     state_.ledger.total0 = energies().total() - drift;
+    release_unused_memory();
 }
 
 bool Simulation::end_stage() {

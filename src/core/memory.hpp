@@ -1,0 +1,16 @@
+// Memory of this process: how much, and the heap given back.
+#pragma once
+
+namespace talus {
+
+/// bytes, resident; `now` is the peak where the system does not tell.
+struct MemoryUse {
+    double now = 0.0, peak = 0.0;
+};
+MemoryUse memory_use();
+
+/// Returns to the system what the heap holds in reserve after work that needed much memory for a short time. Does nothing
+/// where the C library cannot.
+void release_unused_memory();
+
+}  // namespace talus
