@@ -35,7 +35,7 @@ namespace {
         const Approach approach{q.vax[i], q.vay[i], q.spin_a[i], q.vbx[i], q.vby[i], q.spin_b[i], q.dx[i], q.dy[i]};
         const Response r = respond(joint, p, approach, dt, damping, q.face_length[i], Vector{q.nx[i], q.ny[i]}, shear);
 
-        q.valid[i] = w.valid & (w.slender | (q.remembers[i] != 0.0)) ? 1.0 : 0.0;
+        q.valid[i] = w.valid & (w.simple | (q.remembers[i] != 0.0)) ? 1.0 : 0.0;
         q.loaded[i] = std::max(closure.lo, closure.hi) > 0.0 ? 1.0 : 0.0;
         q.force[i] = shear.force, q.energy[i] = shear.energy, q.slip[i] = shear.slip, q.slip_sum[i] = shear.slip_sum;
         q.dilation[i] = shear.dilation, q.slipped[i] = shear.slipped;

@@ -43,7 +43,7 @@ FaceContact face_contact(const PlacedPart& a, const PlacedPart& b, double dx, do
     FaceContact contact;
     const FaceLines lines = face_lines(a, b, dx, dy, ea, eb);
     const Window w = face_window(lines);
-    if (!w.valid || !(w.slender || memory)) return contact;
+    if (!w.valid || !(w.simple || memory)) return contact;
     const Closure closure = closure_of(w, initial_of(memory));
     FaceIntegral sum;
     double bonded_length = 0.0;

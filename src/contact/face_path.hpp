@@ -48,12 +48,12 @@ inline FaceLines face_lines(const PlacedPart& a, const PlacedPart& b, double dx,
             outer(b, b.previous(eb))};
 }
 
-/// Contact along edge ea of A and edge eb of B. `invalid` when the edges are more than 5 degrees from anti-parallel or when
-/// the window in which they face each other is not long against the overlap: then corners matter and the general law must
-/// decide (a face with memory ends only by the angle or when the edges no longer face each other). The closure u(s) is
-/// linear between the ends of the window; pressure kn u where closed, Winkler moments exact. The force acts along the
-/// bisector of the two faces plus, at each end of the window, the thrust (kn/4) u^2 of the side edge whose corner lies
-/// there: without it a block tilted by theta would feel a false tangential force N theta / 2. Differs from the general
+/// Contact along edge ea of A and edge eb of B. `invalid` when the edges are more than 1 degree from anti-parallel (with
+/// memory: 5) or when the window in which they face each other is not long against the overlap: then corners matter and the
+/// general law must decide (a face with memory ends only by the angle or when the edges no longer face each other). The
+/// closure u(s) is linear between the ends of the window; pressure kn u where closed, Winkler moments exact. The force acts
+/// along the bisector of the two faces plus, at each end of the window, the thrust (kn/4) u^2 of the side edge whose corner
+/// lies there: without it a block tilted by theta would feel a false tangential force N theta / 2. Differs from the general
 /// distance potential by O(u / length) in stiffness, and by higher order in direction.
 FaceContact face_contact(const PlacedPart& a, const PlacedPart& b, double dx, double dy, int ea, int eb,
                          const FaceMemory* memory);

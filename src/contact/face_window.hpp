@@ -29,12 +29,13 @@ struct Window {
     double gap_lo, gap_hi;  // m, distance between the two corners nearest to each end; > 0 if it is a's corner that lies
                             //    inside the face of b, < 0 if b's lies inside the face of a
     bool valid;             // the faces look at each other and have a stretch in common
-    bool slender;           // long against the overlap: the corners do not matter
+    bool simple;            // nearly parallel, and long against the overlap: the corners do not matter
 };
 
 namespace face {
-constexpr double cos_limit = 0.99619469809;  // 5 degrees: beyond, the thrust of the side edges is no small correction
-constexpr double slender = 16.0;             // window / overlap: below, the cells of the corners in the potential matter
+constexpr double cos_opposite = 0.99619469809175;  // 5 degrees: beyond, faces no longer lie on each other
+constexpr double cos_flat = 0.99984769515639;      // 1 degree: beyond, energies of this and the general form differ too much
+constexpr double slender = 16.0;                   // window / overlap: below, cells of the corners in the potential matter
 }  // namespace face
 
 [[gnu::always_inline]] inline Window face_window(const FaceLines& f) {
@@ -64,8 +65,8 @@ constexpr double slender = 16.0;             // window / overlap: below, the cel
     const double gap_lo = sa0 - sb0, gap_hi = sb1 - sa1;
     w.gap_lo = gap_lo * (gap_lo > 0.0 ? f.a_lo : f.b_lo);
     w.gap_hi = gap_hi * (gap_hi > 0.0 ? f.a_hi : f.b_hi);
-    w.valid = (cosine >= face::cos_limit) & (w.lo < w.hi);
-    w.slender = face::slender * std::max(w.u_lo, w.u_hi) < w.hi - w.lo;
+    w.valid = (cosine >= face::cos_opposite) & (w.lo < w.hi);
+    w.simple = (cosine >= face::cos_flat) & (face::slender * std::max(w.u_lo, w.u_hi) < w.hi - w.lo);
     return w;
 }
 

@@ -177,14 +177,15 @@ private:
         for (int k = 0; k < count; ++k) {
             const int i = batch_.slot[k];
             Contact& c = contacts_.list[i];
-            if (batch_.valid[k] == 0.0) {
+            const bool valid = batch_.valid[k] != 0.0, loaded = batch_.loaded[k] != 0.0;
+            if (valid && loaded) {
+                take(k, i);
+            } else if (valid && c.face >= 0) {
+                unload(i, couple(c));
+            } else {  // turned away, or open here: other edges may touch
                 c.face = c.face >= 0 ? end_face(c) : -1;
                 c.edge_a = c.edge_b = -1;
                 evaluate(i);
-            } else if (batch_.loaded[k] == 0.0) {
-                unload(i, couple(c));
-            } else {
-                take(k, i);
             }
         }
     }
