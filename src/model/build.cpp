@@ -177,9 +177,14 @@ void Builder::set_initial_stress() {
         for (const auto& row : spec->joints)
             if (joint_index(model_, row.joint) < 0)
                 fault({scenario_.file, 0}, "initial_stress.joints", "there is no joint named `" + row.joint + "`");
-        throw_faults();
         const Box& outline = scenario_.rock ? rock_.outline : all_;
         const int blocks = scenario_.rock ? static_cast<int>(rock_.shapes.size()) : model_.blocks.size();
+        const bool loaded[] = {spec->left, spec->right, spec->bottom, spec->top};
+        for (int i = 0; i < 4; ++i)
+            if (loaded[i] && edges_on_side(model_, corner_, blocks, outline, sides[i]).empty())
+                fault({scenario_.file, 0}, std::string("initial_stress.") + side_names[i],
+                      "loads nothing: no block has an edge along this side of the box around the rock");
+        throw_faults();
         const double gravity = scenario_.gravity(0.0).norm();
         field = stress_field(*spec, density_[model_.blocks.material.front()] * gravity, outline.ymax);
         model_.loads = boundary_loads(model_, *spec, field, corner_, neighbours_.covered, blocks, outline);

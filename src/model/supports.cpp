@@ -9,7 +9,6 @@ namespace talus {
 namespace {
 
 constexpr double relative_tolerance = 1e-9;
-constexpr const char* side_names[] = {"left", "right", "bottom", "top"};  // in the order of `sides`
 
 double size(const Box& box) { return std::max(box.xmax - box.xmin, box.ymax - box.ymin); }
 

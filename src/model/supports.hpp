@@ -11,6 +11,7 @@ namespace talus {
 
 enum class Side { left, right, bottom, top };
 inline constexpr Side sides[] = {Side::left, Side::right, Side::bottom, Side::top};
+inline constexpr const char* side_names[] = {"left", "right", "bottom", "top"};
 
 struct OuterEdge {
     BlockId block;

@@ -218,6 +218,13 @@ TEST_CASE("a surcharge needs its load on the top side") {
     CHECK(imbalance(build(scene)).force < 1e-12);
 }
 
+TEST_CASE("stress on a side that no block reaches with an edge is refused") {
+    Scenario scene = stressed_rock({joint_set(20, 1.3)}, 0.6);
+    scene.rock->outline = {{0, 0}, {20, 0}, {18, 12}, {1, 11}};
+    scene.initial_stress->left = scene.initial_stress->bottom = true;
+    CHECK_THROWS_WITH(build(scene), Catch::Contains("initial_stress.left") && !Catch::Contains("initial_stress.bottom"));
+}
+
 TEST_CASE("balance holds far from the origin to the rounding of the coordinates") {
     Scenario scene = stressed_rock({joint_set(-35, 1.3), joint_set(70, 1.7)}, 0.5);
     const Vec2 away(4.5e5, 6.5e6);
