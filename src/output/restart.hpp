@@ -11,11 +11,8 @@
 
 namespace talus {
 
-struct RestartInfo {
-    std::string scenario_file, scenario_text;
-    std::uint64_t scenario_hash = 0;
-    std::vector<std::string> overrides;  // as given to --set
-    std::int64_t frames = 0;             // in the result file at this moment
+struct RestartInfo : ScenarioInfo {
+    std::int64_t frames = 0;  // in the result file at this moment
     HistoryRows history_rows;
 };
 

@@ -17,12 +17,15 @@
 
 namespace talus {
 
-struct RunInfo {  // provenance: enough to run the same again
-    std::string title, source;
-    std::string scenario_file, scenario_text, canonical_json;
+struct ScenarioInfo {  // which scenario: enough to read it again
+    std::string scenario_file, scenario_text;
     std::uint64_t scenario_hash = 0;
+    std::vector<std::string> overrides;  // as given to --set
+};
+
+struct RunInfo : ScenarioInfo {  // provenance: enough to run the same again
+    std::string title, source, canonical_json;
     std::vector<std::pair<std::string, std::uint64_t>> files;  // that the scenario names; FNV-1a of what was in them
-    std::vector<std::string> overrides;                        // as given to --set
     std::string solver, search;
     int threads = 1;
     double skin = 0.0;                                                  // m

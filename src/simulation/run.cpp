@@ -21,17 +21,19 @@ std::string now_iso() {
     return text;
 }
 
+ScenarioInfo scenario_info(const Simulation& simulation, const std::vector<std::string>& overrides) {
+    const Scenario& scenario = simulation.scenario();
+    return {scenario.file, scenario.text, scenario.hash, overrides};
+}
+
 RunInfo run_info(const Simulation& simulation, const std::vector<std::string>& overrides) {
     const Scenario& scenario = simulation.scenario();
     RunInfo info;
+    static_cast<ScenarioInfo&>(info) = scenario_info(simulation, overrides);
     info.title = scenario.title;
     info.source = scenario.source;
-    info.scenario_file = scenario.file;
-    info.scenario_text = scenario.text;
     info.canonical_json = scenario.canonical_json;
-    info.scenario_hash = scenario.hash;
     info.files = scenario.files;
-    info.overrides = overrides;
     info.solver = "explicit";
     info.search = scenario.run.search;
     info.threads = scenario.run.threads;
@@ -41,16 +43,6 @@ RunInfo run_info(const Simulation& simulation, const std::vector<std::string>& o
     info.stable_estimate = simulation.stable().estimate;
     info.start_date = now_iso();
     info.contacts = scenario.record.contacts;
-    return info;
-}
-
-RestartInfo restart_info(const Simulation& simulation, const std::vector<std::string>& overrides) {
-    const Scenario& scenario = simulation.scenario();
-    RestartInfo info;
-    info.scenario_file = scenario.file;
-    info.scenario_text = scenario.text;
-    info.scenario_hash = scenario.hash;
-    info.overrides = overrides;
     return info;
 }
 
@@ -81,7 +73,7 @@ double last_time(const std::string& path, std::int64_t frames) {
 }  // namespace
 
 Recorder::Recorder(const std::string& path, const Simulation& simulation, const std::vector<std::string>& overrides)
-    : info_(restart_info(simulation, overrides)),
+    : info_{scenario_info(simulation, overrides), 0, {}},
       writer_(path, simulation.model(), run_info(simulation, overrides)),
       frame_every_(default_interval(simulation)) {
     add_histories(simulation);
