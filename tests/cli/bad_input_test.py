@@ -145,12 +145,12 @@ class BadInput(Program):
     def test_a_result_of_another_version(self):
         self.write("slope.yaml", INCLINE)
         self.talus("run", "slope.yaml")
-        for name, commands in (("slope.h5", ("info", "export")), ("slope.restart.h5", ("resume",))):
+        for name, version, commands in (("slope.h5", 1, ("info", "export")), ("slope.restart.h5", 2, ("resume",))):
             with self.subTest(name):
                 path = self.folder / name
                 good = path.read_bytes()
                 at = good.index(b"schema_version\0")
-                value = good.rindex((1).to_bytes(8, "little"), at, at + 72)  # the last such number of the attribute
+                value = good.rindex(version.to_bytes(8, "little"), at, at + 72)  # the last such number of the attribute
                 path.write_bytes(good[:value] + (99).to_bytes(8, "little") + good[value + 8:])
                 for command in commands:
                     self.refused(command, "slope.h5", report=rf"{re.escape(name)}: .*version 99")
