@@ -7,8 +7,8 @@
 namespace talus::cli {
 
 // 0; 1 expectation failed or equilibrium not reached; 2 anything the user gave; 3 diverged; 4 output failed in mid-run;
-// 130 interrupted
-enum ExitCode { ok = 0, not_met = 1, bad_input = 2, diverged = 3, output_failed = 4, interrupted = 130 };
+// 5 memory ran out, or a fault of ours; 130 interrupted
+enum ExitCode { ok = 0, not_met = 1, bad_input = 2, diverged = 3, output_failed = 4, failed = 5, interrupted = 130 };
 
 struct RunArguments {
     std::string scenario, output, case_name;

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <exception>
 #include <functional>
+#include <new>
 
 using namespace talus;
 using namespace talus::cli;
@@ -29,9 +30,7 @@ void add_overrides(CLI::App& command, std::vector<std::string>& overrides) {
     shorthand("--until", "run.until.time", "s, length of the run");
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int program(int argc, char** argv) {
     CLI::App app{"2D discrete-element simulator for jointed rock and masonry", "talus"};
     app.set_version_flag("--version", std::string("talus ") + version);
     app.require_subcommand(1);
@@ -83,9 +82,17 @@ int main(int argc, char** argv) {
 
     try {
         app.parse(argc, argv);
-        return command();
     } catch (const CLI::ParseError& error) {
         return app.exit(error) == 0 ? ok : bad_input;
+    }
+    return command();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    try {
+        return program(argc, argv);
     } catch (const InputError& error) {
         std::fprintf(stderr, "%s\n", error.what());
         return bad_input;
@@ -95,5 +102,11 @@ int main(int argc, char** argv) {
     } catch (const OutputError& error) {
         std::fprintf(stderr, "output failed: %s\n", error.what());
         return output_failed;
+    } catch (const std::bad_alloc&) {
+        std::fprintf(stderr, "out of memory\n");
+        return failed;
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "a fault of talus itself: %s\n", error.what());
+        return failed;
     }
 }

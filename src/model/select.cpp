@@ -21,9 +21,10 @@ std::vector<BlockId> matching(const Model& model, const Selector& selector) {
         const bool meant = !selector.region.empty() ? region >= 0 && model.blocks.region[b] == region
                            : selector.at            ? contains(model, b, *selector.at - start, on_edge)
                                                     : contains(selector.inside, start);
-        if (meant) found.push_back(b);
+        if (!meant) continue;
+        found.push_back(b);
+        if (selector.at) break;  // one block, even where several meet
     }
-    if (selector.at && found.size() > 1) found.resize(1);
     return found;
 }
 
