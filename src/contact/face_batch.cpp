@@ -36,7 +36,7 @@ namespace {
         const Response r = respond(joint, p, approach, dt, damping, q.face_length[i], Vector{q.nx[i], q.ny[i]}, shear);
 
         q.valid[i] = w.valid & (w.simple | (q.remembers[i] != 0.0)) ? 1.0 : 0.0;
-        q.loaded[i] = std::max(closure.lo, closure.hi) > 0.0 ? 1.0 : 0.0;
+        q.loaded[i] = (std::max(closure.lo, closure.hi) > 0.0) & (sum.length > 0.0) ? 1.0 : 0.0;
         q.force[i] = shear.force, q.energy[i] = shear.energy, q.slip[i] = shear.slip, q.slip_sum[i] = shear.slip_sum;
         q.dilation[i] = shear.dilation, q.slipped[i] = shear.slipped;
         q.sliding[i] = r.sliding ? 1.0 : 0.0;

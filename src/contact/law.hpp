@@ -10,12 +10,14 @@
 namespace talus {
 
 struct ShearStep {
-    double normal_force;   // N, compression > 0
+    double normal_force;   // N, compression > 0, with the dashpot
     double length;         // m, loaded
     double bonded_length;  // m, of intact bond cells
     double face_length;    // m, of the face the contact was built with; 0 = none: no cohesion ever
     double displacement;   // m, of b against a along perp(normal) in this step
     double dashpot;        // N, viscous shear force, counted only while the contact sticks
+    double elastic = 0.0;  // N, normal force without its dashpot
+    double opening = 0.0;  // m, of b from a along the normal in this step
 };
 
 /// What a contact knows about its shear; the members of the same names in Contact.
@@ -29,6 +31,7 @@ struct ShearResult {
     double dashpot = 0.0;   // N, part of it that acts
     double friction = 0.0;  // J, dissipated by slip
     double released = 0.0;  // J, elastic energy given up because the contact shrank
+    double lift = 0.0;      // m, by which slip has thickened the joint
     bool sliding = false;
     bool bonds_fail = false;  // first slip of a joint that weakens: its bonds are gone
 };
@@ -77,10 +80,11 @@ struct ShearResult {
 
     // If it slides:
     const double sign = trial > 0.0 ? 1.0 : -1.0;
-    const double opening = std::abs(c.slip_sum) < joint.dilation_cutoff_slip ? joint.tan_dilation : 0.0;
-    const double per_slip = sign * c.slip_sum > 0.0 ? -opening : opening;  // dilation grows away from the start only
-    const double stiffening = (weakens_now ? residual_friction : friction) * joint.kn * step.length * per_slip;
-    const double slip = (size - result.strength) / std::max(stiffness + stiffening, 0.1 * stiffness);
+    const double tangent = std::abs(c.slip_sum) < joint.dilation_cutoff_slip ? joint.tan_dilation : 0.0;
+    const double per_slip = sign * c.slip_sum > 0.0 ? -tangent : tangent;  // dilation grows away from the start only
+    const double strengthening = (weakens_now ? residual_friction : friction) * joint.kn * step.length * per_slip;
+    const double stiffening = std::max(strengthening, -0.9 * stiffness);  // beyond, the joint would run away by itself
+    const double slip = std::min((size - result.strength) / (stiffness + stiffening), size * softness);
     const double slid_force = sign * positive_part(result.strength + stiffening * slip);
     const double slip_sum = c.slip_sum - sign * slip;
     const double dilation = joint.tan_dilation * std::min(std::abs(slip_sum), joint.dilation_cutoff_slip);
@@ -88,12 +92,13 @@ struct ShearResult {
     // Slip evens the stress out: a contact that slides is sheared over its whole length. What lifts the block is not lost.
     const double slid_energy = 0.5 * slid_force * slid_force * softness;
     const double slid_work = energy - slid_energy - 0.5 * (before + slid_force) * step.displacement -
-                             lift * (step.normal_force + 0.5 * joint.kn * step.length * lift);
+                             lift * (step.elastic + 0.5 * joint.kn * step.length * (lift + step.opening));
     // If it sticks:
     const double held_energy = std::max(energy - 0.5 * (before + trial) * step.displacement, 0.5 * trial * trial * softness);
     const double held_dashpot = std::abs(trial + step.dashpot) <= result.strength ? step.dashpot : 0.0;
 
     result.friction = lost_work + (result.sliding ? slid_work : 0.0);
+    result.lift = result.sliding ? lift : 0.0;
     result.dashpot = result.sliding ? 0.0 : held_dashpot;
     c.force = result.sliding ? slid_force : trial;
     c.energy = result.sliding ? slid_energy : held_energy;

@@ -59,15 +59,20 @@ struct Vector {
     Response r;
     r.normal_force = elastic + normal_dashpot;
     const ShearStep step{r.normal_force, p.length, p.bonded_length,
-                         face_length,    vt * dt,  -damping * joint.ks * p.length * vt};
+                         face_length,    vt * dt,  -damping * joint.ks * p.length * vt,
+                         elastic,        vn * dt};
     const ShearResult shear = mohr_coulomb(joint, step, c);
     const double t = c.force + shear.dashpot;
-    const double other_x = normal_dashpot * p.nx + t * tx, other_y = normal_dashpot * p.ny + t * ty;
+    const double lifted = joint.kn * p.length * shear.lift;
+    const double lifting = p.bonded_length == 0.0 ? std::max(lifted, -r.normal_force) : lifted;
+    const double other_n = normal_dashpot + lifting;
+    r.normal_force += lifting;
+    const double other_x = other_n * p.nx + t * tx, other_y = other_n * p.ny + t * ty;
     r.fx = joint.kn * p.fx + other_x;
     r.fy = joint.kn * p.fy + other_y;
     r.torque_a = -(joint.kn * p.torque_a + (p.x * other_y - p.y * other_x) + moment_dashpot);
     r.torque_b = joint.kn * p.torque_b + (bx * other_y - by * other_x) + moment_dashpot;
-    r.strength = shear.strength;
+    r.strength = std::max(shear.strength, std::abs(c.force));
     r.friction = shear.friction;
     r.damping = -(normal_dashpot * vn + shear.dashpot * vt + moment_dashpot * turning) * dt;
     r.released = shear.released + given_up;

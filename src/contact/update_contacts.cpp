@@ -71,6 +71,12 @@ private:
         const Vec2 &from = placed_.block[a].position, &to = placed_.block[b].position;
         return {{model_, placed_, c.part_a}, {model_, placed_, c.part_b}, a, b, to.x() - from.x(), to.y() - from.y()};
     }
+    // Slip has thickened a joint that dilates: the same as moving b against a.
+    static Couple thickened(const Contact& c, Couple s) {
+        s.dx -= c.dilation * c.normal.x();
+        s.dy -= c.dilation * c.normal.y();
+        return s;
+    }
     Approach approach(const Couple& s) const {
         const PlacedBlock &a = placed_.block[s.block_a], &b = placed_.block[s.block_b];
         return {a.velocity.x(), a.velocity.y(), a.spin, b.velocity.x(), b.velocity.y(), b.spin, s.dx, s.dy};
@@ -101,6 +107,7 @@ private:
         const Separation apart = separation(s.a, s.b, s.dx, s.dy);
         // Since the refresh both blocks may have moved by the skin, and may move back as far on the other side.
         const int slot = idle.slot;
+        if (apart.edge < 0) return;  // no finite place: the step ends with a report
         idle = keep_apart(model_, placed_, c.part_a, c.part_b, apart, 2.0 * index_.skin).idle;
         idle.slot = slot;
     }
@@ -183,7 +190,7 @@ private:
             } else if (valid && c.face >= 0) {
                 unload(i, couple(c));
             } else {  // turned away, or open here: other edges may touch
-                c.face = c.face >= 0 ? end_face(c) : -1;
+                if (c.face >= 0) end_face(c, couple(c));
                 c.edge_a = c.edge_b = -1;
                 evaluate(i);
             }
@@ -211,13 +218,11 @@ private:
     void evaluate(int i) {
         Contact& c = contacts_.list[i];
         const Couple s = couple(c);
-        Couple shifted = s;  // slip has thickened a joint that dilates: the same as moving b against a
-        const double thicker_x = c.dilation * c.normal.x(), thicker_y = c.dilation * c.normal.y();
-        shifted.dx -= thicker_x;
-        shifted.dy -= thicker_y;
+        const Couple shifted = thickened(c, s);
         Pressed pressed = press(c, shifted);
         if (!pressed.loaded()) return unload(i, s);
-        pressed.torque_b -= thicker_x * pressed.fy - thicker_y * pressed.fx;  // the force acts at the true place
+        // The force acts at the true place.
+        pressed.torque_b -= (s.dx - shifted.dx) * pressed.fy - (s.dy - shifted.dy) * pressed.fx;
         load(i, s, pressed);
     }
 
@@ -226,7 +231,7 @@ private:
         if (c.face >= 0) {
             const FaceContact face = remembered_face(c, s);
             if (face.state != FaceState::invalid) return face.pressed;
-            c.face = end_face(c);
+            end_face(c, s);
         }
         c.edge_a = c.edge_b = -1;
         const Separation apart = separation(s.a, s.b, s.dx, s.dy);
@@ -258,11 +263,14 @@ private:
         const int ea = face.edge_a - s.a.first, eb = face.edge_b - s.b.first;
         const FaceMemory memory = joint_memory(face, joint, contacts_.broken);
         FaceContact contact = face_contact(s.a, s.b, s.dx, s.dy, ea, eb, &memory);
-        if (contact.largest_pull * joint.kn > joint.tension &&
-            break_cells(s.a, s.b, s.dx, s.dy, ea, eb, memory, joint.tension / joint.kn, &contacts_.broken[face.first_cell]) >
-                0) {
-            contact = face_contact(s.a, s.b, s.dx, s.dy, ea, eb, &memory);
-            if (contact.pressed.bonded_length == 0.0) c.slipped = 1;  // all of it has broken: residual strength
+        if (contact.largest_pull * joint.kn > joint.tension) {
+            const double before = bond_energy(c, s);
+            if (break_cells(s.a, s.b, s.dx, s.dy, ea, eb, memory, joint.tension / joint.kn,
+                            &contacts_.broken[face.first_cell]) > 0) {
+                work_->released += before - bond_energy(c, s);
+                contact = face_contact(s.a, s.b, s.dx, s.dy, ea, eb, &memory);
+                if (contact.pressed.bonded_length == 0.0) c.slipped = 1;  // all of it has broken: residual strength
+            }
         }
         return contact;
     }
@@ -272,7 +280,7 @@ private:
         ShearMemory shear{c.shear_force, c.shear_energy, c.slip, c.slip_sum, c.dilation, c.slipped ? 1.0 : 0.0};
         const Response r = respond(model_.joints[c.joint], p, approach(s), dt_, damping_, face_length(c),
                                    {c.normal.x(), c.normal.y()}, shear);
-        if (r.bonds_fail) break_bonds(model_.faces[c.face]);
+        if (r.bonds_fail) break_bonds(c, thickened(c, s));
         changed_ |= !c.alive;
         c.touching = c.alive = 1;
         c.sliding = r.sliding;
@@ -309,8 +317,8 @@ private:
         contacts_.reaction[i] = {};
         const Separation apart = separation(s.a, s.b, s.dx, s.dy);
         c.overlap = -apart.distance;
-        if ((c.face < 0 && c.slip == 0.0) || apart.distance > memory_reach(model_, c.part_a, c.part_b)) {
-            if (c.face >= 0) end_face(c);
+        if ((c.face < 0 && !c.slipped) || apart.distance - c.dilation > memory_reach(model_, c.part_a, c.part_b)) {
+            if (c.face >= 0) end_face(c, s);
             const PartId part_a = c.part_a, part_b = c.part_b;
             c = Contact{part_a, part_b, model_.joint_between(part_a, part_b)};
             changed_ = true;
@@ -318,15 +326,25 @@ private:
     }
 
     // The faces have turned away or slid off: bonds and initial stress are over, for good.
-    int end_face(const Contact& c) {
-        const JointFace& face = model_.faces[c.face];
-        if (face.bonded) break_bonds(face);
-        return -1;
+    void end_face(Contact& c, const Couple& s) {
+        break_bonds(c, s);
+        c.face = -1;
     }
 
-    void break_bonds(const JointFace& face) {
+    void break_bonds(const Contact& c, const Couple& s) {
+        const JointFace& face = model_.faces[c.face];
+        if (!face.bonded) return;
+        const double before = bond_energy(c, s);
         for (int i = 0; i < model_.joints[face.joint].cells; ++i)
             if (!contacts_.broken[face.first_cell + i]) contacts_.broken[face.first_cell + i] = 2;
+        work_->released += before - bond_energy(c, s);
+    }
+
+    double bond_energy(const Contact& c, const Couple& s) const {  // J, normal part
+        const JointFace& face = model_.faces[c.face];
+        const Joint& joint = model_.joints[c.joint];
+        const FaceMemory memory = joint_memory(face, joint, contacts_.broken);
+        return joint.kn * face_energy(s.a, s.b, s.dx, s.dy, face.edge_a - s.a.first, face.edge_b - s.b.first, &memory);
     }
 
     const Model& model_;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace talus {
 namespace {
@@ -26,7 +27,7 @@ double force_squared(const Model& model, std::span<const Force> load) {
 }
 
 Force load_at(const Load& l, double t, double angle) {
-    const double c = std::cos(angle), s = std::sin(angle);
+    const auto [c, s] = turn(angle);
     const Vec2 force(l.force_x(t), l.force_y(t));
     const Vec2 arm(c * l.arm.x() - s * l.arm.y(), s * l.arm.x() + c * l.arm.y());
     return {force, cross(arm, force) + l.moment(t)};
@@ -141,7 +142,8 @@ double account(const Model& model, const StepEnd& before, const StepEnd& after, 
         for (int b = k * chunk; b < std::min((k + 1) * chunk, nb); ++b) {
             const Vec2 &free = model.blocks.inv_mass[b], &v = motion.velocity[b];
             const double spin = motion.spin[b];
-            w.speed = std::max(w.speed, std::sqrt(v.squaredNorm()) + std::abs(spin) * model.blocks.radius[b]);
+            const double speed = std::sqrt(v.squaredNorm()) + std::abs(spin) * model.blocks.radius[b];
+            w.speed = std::isfinite(speed) ? std::max(w.speed, speed) : std::numeric_limits<double>::infinity();
             const double px = 0.5 * dt * v.x() * (before.load[b].force.x() + after.load[b].force.x());
             const double py = 0.5 * dt * v.y() * (before.load[b].force.y() + after.load[b].force.y());
             const double pr = 0.5 * dt * spin * (before.load[b].torque + after.load[b].torque);

@@ -15,6 +15,8 @@ void check_joint(const Cursor& joint) {
     };
     above(joint["dilation_angle_deg"], joint["friction_angle_deg"],
           "is above the friction angle: shearing would gain energy");
+    above(joint["dilation_angle_deg"], joint["residual"]["friction_angle_deg"],
+          "is above the residual friction angle: shearing would gain energy");
     for (const char* key : {"friction_angle_deg", "cohesion"})
         above(joint["residual"][key], joint[key], "is above the peak value");
 }

@@ -72,24 +72,26 @@ const std::string joint_meaning =
 Shape joint_keys(const std::string& title, const std::string& meaning, bool change) {
     const auto must = change ? optional : required;
     const auto zero = change ? optional : fallback("0");
-    const auto is = [&](const std::string& value) { return change ? optional : fallback(value); };
     const Shape residual = table(
         change ? "residual change" : "residual",
         "Strength after the first slip, or after the last bond cell broke; never above the peak. Tension is then none.",
         {{"friction_angle_deg", number("deg", friction_range), change ? optional : derived("the peak value"),
           "friction angle"},
          {"cohesion", number("Pa", not_negative), zero, "cohesion"}});
-    return table(title, meaning,
-                 {{"normal_stiffness", number("Pa/m", positive), must, "stress per closure"},
-                  {"shear_stiffness", number("Pa/m", positive), must, "stress per elastic shear displacement"},
-                  {"friction_angle_deg", number("deg", friction_range), zero, "peak friction angle"},
-                  {"cohesion", number("Pa", not_negative), zero, "of the unbroken bond"},
-                  {"tension", number("Pa", not_negative), zero, "tensile strength of the unbroken bond"},
-                  {"dilation_angle_deg", number("deg", friction_range), zero, "not above the friction angle"},
-                  {"dilation_cutoff_slip", number("m", positive), change ? optional : derived("no cut-off"),
-                   "no dilation beyond this slip"},
-                  {"residual", residual, change ? optional : derived("as peak"), "strength after the first slip or break"},
-                  {"cells", integer({1, 1000}), is("2"), "pieces of a bonded face that break one by one"}});
+    std::vector<Key> keys{
+        {"normal_stiffness", number("Pa/m", positive), must, "stress per closure"},
+        {"shear_stiffness", number("Pa/m", positive), must, "stress per elastic shear displacement"},
+        {"friction_angle_deg", number("deg", friction_range), zero, "peak friction angle"},
+        {"cohesion", number("Pa", not_negative), zero, "of the unbroken bond"},
+        {"tension", number("Pa", not_negative), zero, "tensile strength of the unbroken bond"},
+        {"dilation_angle_deg", number("deg", friction_range), zero, "not above the friction angle, nor the residual one"},
+        {"dilation_cutoff_slip", number("m", positive), change ? optional : derived("no cut-off"),
+         "no dilation beyond this slip"},
+        {"residual", residual, change ? optional : derived("as peak"), "strength after the first slip or break"}};
+    // Not in a change: the cells of the faces are counted when the scene is built.
+    if (!change)
+        keys.push_back({"cells", integer({1, 1000}), fallback("2"), "pieces of a bonded face that break one by one"});
+    return table(title, meaning, std::move(keys));
 }
 
 Shape contacts() {

@@ -280,6 +280,7 @@ void Simulation::delete_blocks() {
 // but with the contacts of now. Each is looked at again, with its own contacts, when it begins.
 void Simulation::check_stages() const {
     const int end = state_.total_steps == 0 ? stage_count() : state_.stage + 1;
+    if (state_.total_steps > 0 && !stage().time_step) return;
     Model model = model_;
     State state = state_;
     std::vector<Fault> faults;
@@ -314,7 +315,10 @@ void Simulation::begin_stage() {
     state_.release.clear();
     state_.calm_checks = 0;
     equilibrium_ = false;
+    const std::vector<Joint> before = model_.joints;
     apply_stage();
+    // The shear force of a contact stays, what it stores goes with its stiffness.
+    for (Contact& c : state_.contacts.list) c.shear_energy *= before[c.joint].ks / model_.joints[c.joint].ks;
     if (!stage().remove.empty()) {
         update_forces(0.0);
         delete_blocks();

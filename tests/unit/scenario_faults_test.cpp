@@ -191,6 +191,10 @@ TEST_CASE("values that contradict each other are refused") {
                 "f.yaml:", "above the peak value");
     check_fault(with("friction_angle_deg: 45", "friction_angle_deg: 45, dilation_angle_deg: 46"),
                 "f.yaml:", "above the friction angle");
+    check_fault(
+        with("friction_angle_deg: 45", "friction_angle_deg: 45, dilation_angle_deg: 20, residual: {friction_angle_deg: 10}"),
+        "f.yaml:", "above the residual friction angle");
+    check_fault(with("bedding: {cohesion: 5e4}", "bedding: {cells: 4}"), "f.yaml:", "cells: unknown key");
     check_fault(with("time: [0, 0.5, 1]", "time: [0, 0.5, 0.5]"), "f.yaml:", "times must increase");
     check_fault(with("value: [0, 0.5]", "value: [0, 0.5, 1]"), "f.yaml:", "has 3 values for 2 times");
     check_fault(with("thickness: 1,", "thickness: 10,"), "f.yaml:", "below twice the radius");
