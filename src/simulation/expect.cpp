@@ -49,6 +49,7 @@ Verdict judge(const ExpectSpec& e, const std::string& name, const Signal& observ
     } else {
         const double short_of = e.above.value_or(-infinity) - v.measured, beyond = v.measured - e.below.value_or(infinity);
         v.expected = short_of > beyond ? *e.above : e.below.value_or(0.0);
+        v.asked = short_of > beyond ? "above" : "below";
         v.error = std::isnan(v.measured) ? v.measured : std::max({0.0, short_of, beyond});
     }
     v.passed = v.error <= v.allowed;  // false for NaN

@@ -17,6 +17,7 @@ struct Verdict {
     double error;      // |measured - expected|, or how far the bound is crossed
     double allowed;    // passed if error <= allowed
     bool passed;
+    const char* asked = "expected";  // or "above", "below"
 };
 
 /// What one expectation says about signals already recorded; `against` is the second axis of loop_area.
