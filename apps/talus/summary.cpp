@@ -156,10 +156,12 @@ void print_summary(const Simulation& simulation, double wall_time) {
 int print_verdicts(const std::vector<Verdict>& verdicts, const std::string& indent) {
     int failed = 0;
     for (const Verdict& v : verdicts) {
-        std::printf("%s%s  %-52s measured %-12.7g %-8s %-12.7g", indent.c_str(), v.passed ? "ok    " : "FAILED",
-                    v.what.c_str(), v.measured, v.asked, v.expected);
-        if (v.asked == std::string_view("expected")) std::printf(" error %-9.2g allowed %.2g", v.error, v.allowed);
-        std::printf("\n");
+        std::printf("%s%s  %-52s measured %-12.7g ", indent.c_str(), v.passed ? "ok    " : "FAILED", v.what.c_str(),
+                    v.measured);
+        if (v.asked == std::string_view("expected"))
+            std::printf("expected %-12.7g error %-9.2g allowed %.2g\n", v.expected, v.error, v.allowed);
+        else
+            std::printf("%-8s %.7g\n", v.asked, v.expected);
         failed += !v.passed;
     }
     return failed;
