@@ -126,9 +126,10 @@ void fill_joint_of_faces(std::span<const Neighbours::Touch> touches, std::span<c
         const Vec2 along = perp(model.corners.normal[touch.edge_a]), from = corner[touch.edge_a] + touch.s0 * along;
         const CutSeam* best = nullptr;
         double longest = 0.0;
-        for (const CutSeam& seam : std::ranges::equal_range(seams, blocks, {}, between)) {
-            const double length = covered(seam, from, along, touch.s1 - touch.s0, tolerance);
-            if (length > longest) best = &seam, longest = length;
+        for (auto seam = std::ranges::lower_bound(seams, blocks, {}, between);
+             seam != seams.end() && between(*seam) == blocks; ++seam) {
+            const double length = covered(*seam, from, along, touch.s1 - touch.s0, tolerance);
+            if (length > longest) best = &*seam, longest = length;
         }
         if (best != nullptr)
             model.joint_of_faces.push_back({Pair{touch.part_a, touch.part_b}, joint_of_source[best->source]});

@@ -104,7 +104,7 @@ double max_normal_stress(const Model& model, const State& state, const Contact& 
     if (!edges) return triangular;
     const auto& [a, b] = *edges;
     const Vec2 along = (a.to - a.from) / a.length();
-    const auto place = [&](const Vec2& p) { return (p - a.from).dot(along); };
+    const auto place = [&along, from = a.from](const Vec2& p) { return (p - from).dot(along); };
     const double low = std::max(0.0, std::min(place(b.from), place(b.to)));
     const double high = std::min(a.length(), std::max(place(b.from), place(b.to)));
     if (c.length < (1.0 - 1e-6) * (high - low)) return triangular;

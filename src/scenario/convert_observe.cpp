@@ -27,7 +27,7 @@ void check_place(const Quantity& quantity, const Cursor& at) {
 /// Component that is observed; `fallback` when none is named, a fault if there has to be one.
 std::string convert_component(const Quantity& quantity, const Cursor& at, const std::string& fallback) {
     const Cursor component = at["component"], direction = at["direction_deg"];
-    const std::string chosen = component.given() ? component.text() : direction.given() ? "along" : fallback;
+    std::string chosen = component.given() ? component.text() : direction.given() ? "along" : fallback;
     if (component.given() && !has(quantity, component.text())) {
         const std::string which = quantity.components.empty() ? "none" : enumerate(quantity.components, " | ");
         component.fault(quantity.name + " has no component " + component.text() + "; it has: " + which);

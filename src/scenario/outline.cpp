@@ -36,7 +36,7 @@ Vec2 meeting_point(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
 
 // All corners on one line, but for rounding, which leaves areas of about 1e-16 of the square of the size.
 bool is_flat(const Polygon& corners) {
-    const Vec2 first = corners.front();
+    const Vec2& first = corners.front();
     Vec2 reach = Vec2::Zero();
     for (const Vec2& corner : corners)
         if ((corner - first).norm() > reach.norm()) reach = corner - first;
