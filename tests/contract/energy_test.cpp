@@ -255,7 +255,7 @@ run: {until: {time: 1.5}}
 }
 
 TEST_CASE("what a bond stores when it breaks is booked as released, in tension and in shear") {
-    for (const std::string& pull : {"velocity_y", "velocity_x"}) {
+    for (const std::string pull : {"velocity_y", "velocity_x"}) {
         Scenario scenario = scenario_of(R"(
 materials: {rock: {density: 2500}}
 joints:
