@@ -101,19 +101,19 @@ std::vector<int> number_faces(Arrangement& arrangement, const CutInput& input, c
         return static_cast<int>(regions.size()) - 1;
     };
 
-    std::vector<std::pair<Arrangement::Face_handle, std::vector<bool>>> todo;
-    todo.emplace_back(arrangement.unbounded_face(), std::vector<bool>(polygons.all.size(), false));
+    std::vector<std::pair<Arrangement::Face_handle, std::vector<bool>>> waiting;
+    waiting.emplace_back(arrangement.unbounded_face(), std::vector<bool>(polygons.all.size(), false));
     arrangement.unbounded_face()->set_data(-1);
-    while (!todo.empty()) {
-        const auto [face, in] = std::move(todo.back());
-        todo.pop_back();
+    while (!waiting.empty()) {
+        const auto [face, in] = std::move(waiting.back());
+        waiting.pop_back();
         for_boundary(face, [&](Arrangement::Halfedge_handle h) {
             const auto other = h->twin()->face();
             if (other->data() != unseen) return;
             std::vector<bool> in_other = in;
             for (const int p : h->curve().data().polygons) in_other[p] = !in_other[p];
             other->set_data(number(in_other));
-            todo.emplace_back(other, std::move(in_other));
+            waiting.emplace_back(other, std::move(in_other));
         });
     }
     return regions;
