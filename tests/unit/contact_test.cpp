@@ -1,6 +1,7 @@
 #include "contact/contacts.hpp"
 #include "contact/distance_potential.hpp"
 #include "contact/face_path.hpp"
+#include "contact/idle.hpp"
 #include "contact/law.hpp"
 #include "contact/separation.hpp"
 #include "core/random.hpp"
@@ -137,6 +138,49 @@ TEST_CASE("parts that an edge separates do nothing to each other, and the hint d
     TwoBlocks pair(rectangle(-1, -1, 1, 0), shifted(rectangle(-1, 0, 1, 1), {2.0, 0.0}));  // meet in one corner only
     CHECK(separation(pair.part(0), pair.part(1), pair.distance().x(), pair.distance().y()).distance >= 0.0);
     CHECK_FALSE(pair.general().loaded());
+}
+
+TEST_CASE(
+    "an idle pair is passed over only while the edge that kept it apart still does, however blocks move within reach") {
+    Random random(3);
+    const auto around = [&](double by) { return by * (2.0 * random.uniform() - 1.0); };
+    int never = 0, quick = 0, touching = 0;
+    for (int trial = 0; trial < 3000; ++trial) {
+        const double size = std::pow(10.0, around(1.0));
+        TwoBlocks pair(random_convex(random, 3 + trial % 4, 1.0), random_convex(random, 3 + trial % 3, size));
+        const Model& model = pair.scene.model;
+        const Vec2 at_a = pair.scene.state.motion.position[0];
+        const double way = (1.0 + size) * (0.6 + 0.5 * random.uniform()), to = 6.3 * random.uniform();
+        const Vec2 at_b = at_a + way * Vec2(std::cos(to), std::sin(to));
+        const double angle_b = around(3.0);
+        pair.put(1, at_b, angle_b);
+        const Vec2 d = pair.distance();
+        const Separation apart = separation(pair.part(0), pair.part(1), d.x(), d.y());
+        if (apart.distance < 0.0) continue;
+        const double reach = 0.1 * random.uniform() * std::min(1.0, size);
+        const Apart kept = keep_apart(model, pair.placed, 0, 1, apart, reach);
+        for (int i = 0; i < 10; ++i) {  // each block moves by what the skin allows: both axes and the turn together
+            for (const BlockId b : {0, 1}) {
+                const double share = random.uniform(), slide = (1.0 - share) * reach;
+                pair.put(b, (b ? at_b : at_a) + Vec2(around(slide), around(slide)),
+                         (b ? angle_b : 0.0) + around(share * reach / model.blocks.radius[b]));
+            }
+            const Vec2 now = pair.distance();
+            const double distance = separation(pair.part(0), pair.part(1), now.x(), now.y()).distance;
+            if (kept.never) CHECK(distance >= 0.0);
+            never += kept.never;
+            touching += distance < 0.0;
+            if (kept.idle.corner < 0) continue;
+            ++quick;
+            const PlacedPart by = pair.part(apart.of_a ? 0 : 1), other = pair.part(apart.of_a ? 1 : 0);
+            const double by_edge =
+                separation_by_edge(by, apart.edge, other, apart.of_a ? now.x() : -now.x(), apart.of_a ? now.y() : -now.y());
+            CHECK(still_apart(model, pair.placed, kept.idle) == (by_edge >= -kept.idle.touch_depth));
+        }
+    }
+    CHECK(never > 1000);
+    CHECK(quick > 1000);
+    CHECK(touching > 100);
 }
 
 TEST_CASE("a shrinking contact loses shear force and gives up the energy; friction work is never negative") {
