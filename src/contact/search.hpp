@@ -3,6 +3,7 @@
 
 #include "core/types.hpp"
 
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <string>
@@ -17,10 +18,24 @@ class PairSearch {
 public:
     virtual ~PairSearch() = default;
 
-    /// All pairs a < b whose closed boxes overlap (touching counts), sorted, each once. Depends on `boxes` alone:
-    /// what a search remembers may make it faster, never different. A box that is not present overlaps nothing;
-    /// the number of boxes may change between calls.
-    virtual void find(std::span<const Box> boxes, std::vector<Pair>& pairs) = 0;
+    /// Brings the set of pairs up to date: afterwards it holds every a < b whose closed boxes overlap (touching counts), and
+    /// no other. It depends on `boxes` alone: what a search remembers may make it faster, never different. A box that is
+    /// not present overlaps nothing; the number of boxes may change between calls.
+    virtual void update(std::span<const Box> boxes) = 0;
+
+    /// Writes the set of the last update, sorted, each pair once.
+    virtual void pairs(std::vector<Pair>& pairs) const = 0;
+
+    /// How often two ends changed places since the search was made; 0 for methods that do not sort.
+    virtual std::int64_t exchanges() const { return 0; }
+
+    /// In words, what a search that chooses its way has chosen; empty for those that have one way only.
+    virtual std::string choice() const { return {}; }
+
+    void find(std::span<const Box> boxes, std::vector<Pair>& found) {
+        update(boxes);
+        pairs(found);
+    }
 };
 
 /// Names accepted by make_search, in the order in which they are documented.

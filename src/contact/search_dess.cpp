@@ -11,19 +11,21 @@ namespace {
 
 class DessSearch final : public PairSearch {
 public:
-    void find(std::span<const Box> boxes, std::vector<Pair>& pairs) override {
+    void update(std::span<const Box> boxes) override {
         sort(boxes);
         rank(x_, boxes.size(), rank_x_);
         rank(y_, boxes.size(), rank_y_);
-        pairs.clear();
+        pairs_.clear();
         for (int i = 0; i < static_cast<int>(boxes.size()); ++i) {
             if (!present(boxes[i])) continue;
             gather_along_x(i);
             for (const int j : candidates_)
-                if (overlap_along_y(i, j)) pairs.push_back({std::min(i, j), std::max(i, j)});
+                if (overlap_along_y(i, j)) pairs_.push_back({std::min(i, j), std::max(i, j)});
         }
-        std::sort(pairs.begin(), pairs.end());
+        std::sort(pairs_.begin(), pairs_.end());
     }
+
+    void pairs(std::vector<Pair>& pairs) const override { pairs = pairs_; }
 
 private:
     struct Ranks {
@@ -69,6 +71,7 @@ private:
     SortedEnds x_{&Box::xmin, &Box::xmax}, y_{&Box::ymin, &Box::ymax};
     std::vector<Ranks> rank_x_, rank_y_;  // [number of boxes] places in x_ and y_
     std::vector<int> candidates_;
+    std::vector<Pair> pairs_;
 };
 
 }  // namespace

@@ -8,9 +8,9 @@ namespace {
 
 class DirectSearch final : public PairSearch {
 public:
-    void find(std::span<const Box> boxes, std::vector<Pair>& pairs) override {
+    void update(std::span<const Box> boxes) override {
         round(boxes);
-        pairs.clear();
+        pairs_.clear();
         for (std::size_t a = 0; a < boxes.size(); ++a) {
             if (!present(boxes[a])) continue;
             for (std::size_t from = a + 1; from < boxes.size(); from += run) {
@@ -18,10 +18,12 @@ public:
                 if (!any_near(a, from, to)) continue;
                 for (std::size_t b = from; b < to; ++b)
                     if (boxes[a].overlaps(boxes[b]) && present(boxes[b]))
-                        pairs.push_back({static_cast<int>(a), static_cast<int>(b)});
+                        pairs_.push_back({static_cast<int>(a), static_cast<int>(b)});
             }
         }
     }
+
+    void pairs(std::vector<Pair>& pairs) const override { pairs = pairs_; }
 
 private:
     // Overlaps are rare, so a run of boxes is asked at once whether it holds any, in a loop that becomes vector
@@ -50,6 +52,7 @@ private:
     }
 
     std::vector<float> xmin_, ymin_, xmax_, ymax_;  // [number of boxes] m, rounded
+    std::vector<Pair> pairs_;
 };
 
 }  // namespace

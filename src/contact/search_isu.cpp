@@ -10,14 +10,15 @@ namespace {
 
 class IsuSearch final : public PairSearch {
 public:
-    void find(std::span<const Box> boxes, std::vector<Pair>& pairs) override {
+    void update(std::span<const Box> boxes) override {
         if (x_.lists_the_same(boxes) && repair(boxes))
-            update(boxes);
+            merge(boxes);
         else
             rebuild(boxes);
         last_.assign(boxes.begin(), boxes.end());
-        pairs = pairs_;
     }
+
+    void pairs(std::vector<Pair>& pairs) const override { pairs = pairs_; }
 
 private:
     /// Puts down every pair that may have come together or apart. Along x the test on the other axis uses the y of the last
@@ -36,7 +37,7 @@ private:
     /// Merges the touched pairs into the sorted list: each is in it afterwards if it overlaps now, and out if not. None
     /// enters twice: a pair that overlaps now and did not before was apart along y, or along x only, and was put down there,
     /// once; twice in the buffer are only pairs that jumped past each other.
-    void update(std::span<const Box> boxes) {
+    void merge(std::span<const Box> boxes) {
         if (touched_.empty()) return;
         std::sort(touched_.begin(), touched_.end());
         merged_.clear();
