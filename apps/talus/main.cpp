@@ -25,7 +25,7 @@ void add_overrides(CLI::App& command, std::vector<std::string>& overrides) {
             help);
     };
     shorthand("--solver", "run.solver", "auto or explicit");
-    shorthand("--search", "run.search", "isu, dess or direct; never changes a result");
+    shorthand("--search", "run.search", "how neighbours are found; never changes a result");
     shorthand("--threads", "run.threads", "never changes a result");
     shorthand("--until", "run.until.time", "s, length of the run");
 }

@@ -49,44 +49,19 @@ namespace {
 
 void baseline(FaceBatch& batch, double dt, double damping) { all_faces(batch, dt, damping); }
 
-#if defined(__x86_64__) && defined(__GNUC__)
-[[gnu::target("avx2")]] void avx2(FaceBatch& batch, double dt, double damping) { all_faces(batch, dt, damping); }
-[[gnu::target("avx512f,avx512dq,avx512vl,prefer-vector-width=512")]] void avx512(FaceBatch& batch, double dt,
-                                                                                 double damping) {
-    all_faces(batch, dt, damping);
-}
+#ifdef TALUS_VECTOR_UNITS
+TALUS_AVX2 void avx2(FaceBatch& batch, double dt, double damping) { all_faces(batch, dt, damping); }
+TALUS_AVX512 void avx512(FaceBatch& batch, double dt, double damping) { all_faces(batch, dt, damping); }
 #endif
 
 }  // namespace
 
-#if defined(__x86_64__) && defined(__GNUC__)
-
-bool has(VectorUnit unit) {
-    switch (unit) {
-        case VectorUnit::avx512:
-            return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
-                   __builtin_cpu_supports("avx512vl");
-        case VectorUnit::avx2:
-            return __builtin_cpu_supports("avx2");
-        case VectorUnit::baseline:
-            return true;
-    }
-    return false;
-}
-
-FaceKernel face_kernel(VectorUnit unit) {
-    return unit == VectorUnit::avx512 ? avx512 : unit == VectorUnit::avx2 ? avx2 : baseline;
-}
-
-#else
-
-bool has(VectorUnit unit) { return unit == VectorUnit::baseline; }
-FaceKernel face_kernel(VectorUnit) { return baseline; }
-
+FaceKernel face_kernel([[maybe_unused]] VectorUnit unit) {
+#ifdef TALUS_VECTOR_UNITS
+    if (unit == VectorUnit::avx512) return avx512;
+    if (unit == VectorUnit::avx2) return avx2;
 #endif
-
-VectorUnit best_vector_unit() {
-    return has(VectorUnit::avx512) ? VectorUnit::avx512 : has(VectorUnit::avx2) ? VectorUnit::avx2 : VectorUnit::baseline;
+    return baseline;
 }
 
 }  // namespace talus

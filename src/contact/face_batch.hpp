@@ -4,6 +4,7 @@
 
 #include "contact/face_window.hpp"
 #include "contact/response.hpp"
+#include "contact/vector_unit.hpp"
 
 namespace talus {
 
@@ -30,13 +31,8 @@ struct alignas(64) FaceBatch {
     int count = 0;
 };
 
-/// Kinds of vector registers; results are the same bits with each.
-enum class VectorUnit { baseline, avx2, avx512 };
-bool has(VectorUnit unit);
-VectorUnit best_vector_unit();
-
 /// Contacts [0, size) of the batch over a step dt (0: forces only); what columns beyond `count` hold does not matter.
-/// `damping`: stiffness-proportional, s.
+/// `damping`: stiffness-proportional, s. The same bits with every unit.
 using FaceKernel = void (*)(FaceBatch& batch, double dt, double damping);
 FaceKernel face_kernel(VectorUnit unit);
 

@@ -16,8 +16,13 @@ struct Method {
 
 constexpr std::array methods = {
     Method{"isu", make_isu_search},
+    Method{"isu-separated", make_isu_separated_search},
+    Method{"isu-parallel", make_isu_parallel_search},
     Method{"dess", make_dess_search},
+    Method{"dess-fused", make_dess_fused_search},
     Method{"direct", make_direct_search},
+    Method{"direct-simd", make_direct_simd_search},
+    Method{"grid", make_grid_search},
 };
 
 constexpr auto names = [] {

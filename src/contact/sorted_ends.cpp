@@ -21,4 +21,11 @@ bool SortedEnds::lists_the_same(std::span<const Box> boxes) const {
                       [](const Box& box, char listed) { return present(box) == (listed != 0); });
 }
 
+std::vector<int> SortedEnds::tags() const {
+    std::vector<int> tags;
+    tags.reserve(ends_.size());
+    for (const End& end : ends_) tags.push_back(2 * end.box + (end.upper ? 1 : 0));
+    return tags;
+}
+
 }  // namespace talus

@@ -1,4 +1,4 @@
-// The ends of all boxes along one axis, in order: what sort-based searches keep between calls.
+// The ends of all boxes along one axis, in order: what the textbook methods that sort keep between calls.
 #pragma once
 
 #include "contact/search.hpp"
@@ -30,14 +30,18 @@ public:
     /// The work, in plain exchanges, after which building anew is the better half of a bad bargain: boxes that all jump then
     /// cost 1.5 times a build, at 1e4 boxes. Half of it would build anew the columns of a regular grid, which share one
     /// coordinate and are shuffled by rounding, from 1.6e4 blocks on (now 6e4); twice of it would double the loss.
-    static std::int64_t worth_repairing(std::span<const Box> boxes) { return 500 * std::ssize(boxes); }
+    static std::int64_t worth_repairing(std::size_t boxes) { return 250 * static_cast<std::int64_t>(boxes); }
 
     SortedEnds(double Box::*lower, double Box::*upper) : lower_(lower), upper_(upper) {}
 
     std::size_t size() const { return ends_.size(); }
     const End& operator[](std::size_t rank) const { return ends_[rank]; }
-    auto begin() const { return ends_.begin(); }
-    auto end() const { return ends_.end(); }
+
+    /// The ends in order, as 2 box, + 1 for an upper one.
+    std::vector<int> tags() const;
+
+    /// How often two ends changed places, in all repairs that came to their end.
+    std::int64_t exchanges() const { return exchanges_; }
 
     /// Along this axis. One branch, not two: which of two boxes lies lower is a coin toss that no processor can predict.
     bool overlap(const Box& a, const Box& b) const { return (a.*lower_ <= b.*upper_) & (b.*lower_ <= a.*upper_); }
@@ -48,26 +52,34 @@ public:
     /// Whether the boxes present are those of the last build.
     bool lists_the_same(std::span<const Box> boxes) const;
 
+    /// Repairs the order, or builds it anew where that is not possible or not worth it.
+    void bring_up_to_date(std::span<const Box> boxes) {
+        if (!lists_the_same(boxes) || !repair(boxes, [](const End&, const End&) {})) build(boxes);
+    }
+
     /// Takes the new coordinates of the same boxes and repairs the order. Ends that change places are exchanged one step at
-    /// a time, each pair of them once; `crossed(i, j)` hears of each exchange of a lower with an upper end of boxes i and j.
-    /// The work is taken from `budget`; when it is used up the list is left unsorted, to be built anew, and the answer is
-    /// false: a list that nearly keeps its order costs one comparison per end, a shuffled one O(N^2).
+    /// a time, each pair of them once; `crossed(passed, moving)` hears of each exchange of a lower with an upper end of two
+    /// boxes, the moving one being lower from now on. False when that is more work than it is worth; the list is then left
+    /// unsorted, to be built anew: a list that nearly keeps its order costs one comparison per end, a shuffled one O(N^2).
     template <class Crossed>
-    bool repair(std::span<const Box> boxes, std::int64_t& budget, Crossed&& crossed) {
+    bool repair(std::span<const Box> boxes, Crossed&& crossed) {
+        std::int64_t exchanges = 0, crossings = 0;
+        const std::int64_t limit = worth_repairing(boxes.size());
         for (std::size_t i = 0; i < ends_.size(); ++i) {
             End moving = ends_[i];
             moving.at = coordinate(boxes, moving);
             std::size_t j = i;
             for (; j > 0 && moving < ends_[j - 1]; --j) {
                 const End& passed = ends_[j] = ends_[j - 1];
-                if (passed.upper == moving.upper || passed.box == moving.box) continue;
-                crossed(passed.box, moving.box);
-                budget -= crossing_cost;
+                if (passed.upper == moving.upper) continue;
+                crossed(passed, moving);
+                ++crossings;
             }
             ends_[j] = moving;
-            budget -= static_cast<std::int64_t>(i - j);
-            if (budget < 0) return false;
+            exchanges += static_cast<std::int64_t>(i - j);
+            if (exchanges + crossing_cost * crossings > limit) return false;
         }
+        exchanges_ += exchanges;
         return true;
     }
 
@@ -80,6 +92,7 @@ private:
     double Box::*upper_;
     std::vector<End> ends_;
     std::vector<char> listed_;  // [number of boxes] 1 = present when built
+    std::int64_t exchanges_ = 0;
 };
 
 }  // namespace talus

@@ -8,6 +8,11 @@
 #include <algorithm>
 #include <functional>
 #include <limits>
+#include <set>
+
+#ifdef _OPENMP
+#include <omp.h>
+#endif
 
 using namespace talus;
 
@@ -248,15 +253,165 @@ TEST_CASE("boxes may lie in map coordinates, where their width is few digits") {
     }
 }
 
-TEST_CASE("an unknown search is refused with the names allowed and the nearest of them") {
-    CHECK_THROWS_AS(make_search("grid"), InputError);
-    CHECK_THROWS_WITH(make_search("grid"),
-                      Catch::Contains("\"grid\"") && Catch::Contains("isu dess direct") && !Catch::Contains("did you mean"));
-    CHECK_THROWS_WITH(make_search("des"), Catch::Contains("did you mean dess?"));
-    CHECK_THROWS_WITH(make_search("dirct"), Catch::Contains("did you mean direct?"));
+TEST_CASE("boxes may be a thousand times as large as others, and change their size class") {
+    Random random(11);
+    const int changes = follow(40, [&](int step, Boxes& boxes) {
+        if (step == 0)
+            for (int i = 0; i < 300; ++i) {
+                const double half = std::pow(10.0, -2.0 + 3.0 * std::pow(random.uniform(), 6));
+                boxes.push_back(square(30.0 * random.uniform(), 30.0 * random.uniform(), half));
+            }
+        for (Box& box : boxes) {
+            box = moved(box, 0.01 * random.normal(), 0.01 * random.normal());
+            if (random.uniform() < 0.02) box = box.grown(0.5 * (box.xmax - box.xmin));          // twice as large
+            if (random.uniform() < 0.04) box = box.grown(-0.25 * (box.xmax - box.xmin));        // half as large
+            if (random.uniform() < 0.01) box.xmax = box.xmin + 1000.0 * (box.xmax - box.xmin);  // a needle
+        }
+    });
+    CHECK(changes > 30);
 }
 
-TEST_CASE("every documented search can be made") {
-    REQUIRE(search_names().size() == 3);
-    for (const char* name : search_names()) CHECK(make_search(name) != nullptr);
+TEST_CASE("boxes may be points, lines and small beside their coordinates") {
+    Random random(12);
+    const int changes = follow(30, [&](int, Boxes& boxes) {
+        boxes.resize(200);
+        for (std::size_t i = 0; i < boxes.size(); ++i) {
+            const double x = std::round(8.0 * random.uniform()), y = std::round(8.0 * random.uniform());
+            const double width = i % 3 == 0 ? 0.0 : std::pow(10.0, -300.0 * random.uniform());
+            boxes[i] = {x, y, x + width, y + (i % 2 == 0 ? 0.0 : std::round(3.0 * random.uniform()))};
+        }
+    });
+    CHECK(changes == 30);
+}
+
+TEST_CASE("boxes may lie where coordinates come to their end") {
+    constexpr double infinite = std::numeric_limits<double>::infinity();
+    Random random(13);
+    const int changes = follow(40, [&](int step, Boxes& boxes) {
+        if (step == 0) boxes = scattered(random, 120, 8.0);
+        for (Box& box : boxes) box = moved(box, 0.05 * random.normal(), 0.05 * random.normal());
+        for (int i = 0; i < 20; ++i) {
+            const double far = std::pow(10.0, 15.0 * (i + 1)) * (i % 2 == 0 ? 1.0 : -1.0);  // up to 1e300
+            boxes[i] = {far, -std::abs(far), far + 0.3 * std::abs(far), std::abs(far) * random.uniform()};
+        }
+        boxes[20] = {-huge, 0.1 * step, huge, 0.1 * step};
+        boxes[21] = step % 3 == 0 ? Box{-infinite, -infinite, infinite, infinite} : Box{0.0, 0.0, 1.0, infinite};
+        boxes[22] = step % 2 == 0 ? Box{infinite, 0.0, infinite, 1.0} : Box{-infinite, 0.0, -infinite, huge};
+    });
+    CHECK(changes > 30);
+}
+
+TEST_CASE("one wall beside all blocks, and blocks in one row or column, are swept like any others") {
+    const int changes = follow(12, [&](int step, Boxes& boxes) {
+        boxes.clear();
+        for (int i = 0; i < 400; ++i) {
+            const double along = i + 0.1 * (step % 3), across = 0.01 * (i * step % 7);
+            boxes.push_back(step % 2 == 0 ? square(along, across, 0.51) : square(across, along, 0.51));
+        }
+        boxes.push_back(step % 4 < 2 ? Box{-1.0, -1.0, 401.0, -0.5} : Box{-1.0, -1.0, -0.5, 401.0});
+    });
+    CHECK(changes > 10);
+}
+
+namespace {
+
+/// Boxes in a pile that is stirred: each moves by a percent of its size per step, some by more.
+void stir(Random& random, Boxes& boxes) {
+    for (Box& box : boxes) {
+        const double by = 0.02 * (box.xmax - box.xmin) * (random.uniform() < 0.01 ? 20.0 : 1.0);
+        box = moved(box, by * random.normal(), by * random.normal());
+    }
+}
+
+void allow_threads([[maybe_unused]] int threads) {
+#ifdef _OPENMP
+    omp_set_num_threads(threads);
+#endif
+}
+
+}  // namespace
+
+TEST_CASE("the number of threads changes no pair and no count of exchanges") {
+    for (const char* name : search_names()) {
+        std::vector<std::vector<Pair>> first;
+        std::int64_t exchanges = 0;
+        for (const int threads : {1, 2, 3, 8}) {
+            allow_threads(threads);
+            Random random(14);
+            Boxes boxes = scattered(random, 3000, 60.0);
+            const auto search = make_search(name);
+            for (int step = 0; step < 12; ++step) {
+                INFO(name << ", " << threads << " threads, step " << step);
+                if (step == 9) std::swap_ranges(boxes.begin(), boxes.begin() + 1500, boxes.begin() + 1500);  // all jump
+                std::vector<Pair> found;
+                search->find(boxes, found);
+                if (threads == 1) first.push_back(found);
+                REQUIRE(found == first[step]);
+                stir(random, boxes);
+            }
+            if (threads == 1) exchanges = search->exchanges();
+            CHECK(search->exchanges() == exchanges);
+        }
+        CHECK(first.front() != first.back());
+    }
+    allow_threads(1);
+}
+
+TEST_CASE("many boxes in fast motion give the same pairs with every search") {
+    allow_threads(3);
+    Random random(15);
+    Boxes boxes = scattered(random, 20000, 150.0);
+    std::vector<std::unique_ptr<PairSearch>> warm;
+    for (const char* name : search_names()) warm.push_back(make_search(name));
+    std::size_t changes = 0;
+    for (int step = 0; step < 4; ++step) {
+        std::vector<Pair> expected, found;
+        warm.front()->find(boxes, expected);
+        for (std::size_t i = 1; i < warm.size(); ++i) {
+            INFO(search_names()[i] << ", step " << step);
+            warm[i]->find(boxes, found);
+            REQUIRE(found == expected);
+        }
+        changes += expected.size() > 20000;
+        stir(random, boxes);
+    }
+    CHECK(changes == 4);
+    allow_threads(1);
+}
+
+TEST_CASE("exchanges are counted: two ends that pass each other are one") {
+    for (const char* name : {"isu", "isu-separated", "isu-parallel", "dess"}) {
+        const auto search = make_search(name);
+        std::vector<Pair> pairs;
+        search->find(Boxes{{0, 0, 1, 1}, {2, 3, 4, 5}}, pairs);
+        CHECK(search->exchanges() == 0);
+        search->find(Boxes{{0, 0, 1, 1}, {0.5, 3, 4, 5}},
+                     pairs);  // along x: the lower end of one passes the upper of the other
+        CHECK(search->exchanges() == 1);
+        search->find(Boxes{{0, 0, 1, 1}, {-0.5, 0.5, 0.5, 5}},
+                     pairs);  // x: its lower end the lower one, its upper end the upper one; y: as above
+        CHECK(search->exchanges() == 4);
+        CHECK(pairs == std::vector<Pair>{{0, 1}});
+        search->find(Boxes{{0, 0, 1, 1}, {-0.5, 0.5, 0.5, 5}}, pairs);
+        CHECK(search->exchanges() == 4);
+    }
+}
+
+TEST_CASE("an unknown search is refused with the names allowed and the nearest of them") {
+    CHECK_THROWS_AS(make_search("octree"), InputError);
+    CHECK_THROWS_WITH(make_search("octree"), Catch::Contains("\"octree\"") && Catch::Contains("dess dess-fused direct") &&
+                                                 !Catch::Contains("did you mean"));
+    CHECK_THROWS_WITH(make_search("des"), Catch::Contains("did you mean dess?"));
+    CHECK_THROWS_WITH(make_search("dirct"), Catch::Contains("did you mean direct?"));
+    CHECK_THROWS_WITH(make_search("isu-paralel"), Catch::Contains("did you mean isu-parallel?"));
+}
+
+TEST_CASE("every documented search can be made, and is its own") {
+    REQUIRE(search_names().size() >= 8);
+    std::set<std::string> names;
+    for (const char* name : search_names()) {
+        CHECK(make_search(name) != nullptr);
+        names.insert(name);
+    }
+    CHECK(names.size() == search_names().size());
 }
