@@ -15,6 +15,7 @@ struct Method {
 };
 
 constexpr std::array methods = {
+    Method{"auto", make_auto_search},
     Method{"isu", make_isu_search},
     Method{"isu-separated", make_isu_separated_search},
     Method{"isu-parallel", make_isu_parallel_search},

@@ -1,0 +1,105 @@
+// Which boxes overlap a given one, while boxes come, go and move: a grid with a level for every size.
+//
+// A box lies in the one cell of its level that holds its centre; the cells of a level are at least half as large as its
+// boxes, so that a question looks at few cells of each level. Cells are hashed (row by row, so that neighbours along x lie
+// together): the plane has no bounds and empty cells cost nothing. M. Teschner et al., Optimized spatial hashing for
+// collision detection of deformable objects, VMV 2003; levels by size as in D. Krijgsman, V. Ogarko & S. Luding, Comput.
+// Part. Mech. 1 (2014) 357-372.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace talus {
+
+/// Closed box in single precision, for lists that may hold too much, never too little.
+struct CoarseBox {
+    float xmin, ymin, xmax, ymax;
+
+    bool overlaps(const CoarseBox& o) const {
+        return (xmin <= o.xmax) & (o.xmin <= xmax) & (ymin <= o.ymax) & (o.ymin <= ymax);
+    }
+};
+
+class CellGrid {
+public:
+    /// Empties the grid, for n boxes with numbers 0 to n-1 in a plane of the given width, m, most of them of size `typical`,
+    /// m.
+    void reset(int n, double width, double typical);
+
+    /// A box that is not in the grid may be put in, one that is may be moved or taken out.
+    void insert(int i, const CoarseBox& box);
+    void move(int i, const CoarseBox& box);
+    void remove(int i);
+    bool holds(int i) const { return node_[i].level != nowhere; }
+    const CoarseBox& box(int i) const { return node_[i].box; }
+
+    /// Calls visit(i) for every box that overlaps `asked` (touching counts), each once, in no useful order; `known` are left
+    /// out.
+    template <class Visit>
+    void overlapping(const CoarseBox& asked, std::span<const int> known, Visit&& visit) {
+        ++question_;
+        for (const int i : known) node_[i].seen = question_;
+        // Without a branch for what is only near: whether a neighbour overlaps is a coin toss.
+        const std::size_t near = gather(asked);
+        std::size_t found = 0;
+        for (std::size_t k = 0; k < near; ++k) {
+            const int i = near_[k];
+            near_[found] = i;
+            found += node_[i].box.overlaps(asked);
+        }
+        for (std::size_t k = 0; k < found; ++k) {
+            Node& node = node_[near_[k]];
+            if (node.seen == question_) continue;  // known, or met in two cells that share a place
+            node.seen = question_;
+            visit(near_[k]);
+        }
+    }
+
+private:
+    struct Node {  // of a box
+        CoarseBox box;
+        int next;            // in the list of those for whom their place has no room; -1 = the last
+        std::uint32_t seen;  // the last question that met it
+        int level;
+    };
+    struct Place {                           // of cells
+        std::array<int, 3> box{-1, -1, -1};  // -1 = free
+        int more = -1;                       // the first of those for whom there is no room
+    };
+    struct Level {
+        double per_cell;      // 1/m
+        std::int64_t stride;  // places from one row of cells to the next
+        std::int64_t first;   // place of the cell (0, 0)
+        double largest;       // m, size of its boxes
+        int population;
+    };
+    static constexpr int nowhere = -1, level_count = 64, outsized = level_count;
+
+    static std::int64_t cell(double at, const Level& level) {
+        return static_cast<std::int64_t>(std::floor(std::clamp(at * level.per_cell, -1e15, 1e15)));
+    }
+    std::size_t place(std::int64_t x, std::int64_t y, const Level& level) const {
+        return static_cast<std::size_t>(x + y * level.stride + level.first) & mask_;
+    }
+    int level_of(const CoarseBox& box) const;
+    std::size_t place_of(const CoarseBox& box, int level) const;
+    std::size_t gather(const CoarseBox& asked);
+    std::size_t gather(const CoarseBox& asked, int number, std::size_t near);
+
+    double smallest_ = 1.0;  // m, size of the cells of level 0
+    std::size_t mask_ = 0;   // places in the table - 1
+    std::array<Level, level_count> level_{};
+    std::vector<int> levels_;    // that were ever used
+    std::vector<int> outsized_;  // boxes too large for any level
+    std::vector<Place> place_;
+    std::vector<Node> node_;  // by box
+    std::vector<int> near_;   // buffer; as long as it ever was
+    std::uint32_t question_ = 0;
+};
+
+}  // namespace talus

@@ -1,0 +1,134 @@
+#include "contact/region_kernels.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#if defined(__x86_64__) && defined(__GNUC__)
+#include <immintrin.h>
+#endif
+
+namespace talus {
+namespace {
+
+struct Kernels {
+    void (*find_escaped)(std::span<const Box>, const Vec2&, const Regions&, int, int, std::vector<int>&);
+    void (*compare_watched)(std::span<const Box>, int, NeighbourLists&);
+};
+
+// ---- any processor ------------------------------------------------------------------------------------------------------
+
+bool inside(const Box& box, const Vec2& centre, const float* at, double radius) {
+    // Written so that a bound that is not a number is outside.
+    return (std::abs(box.xmin - centre.x() - at[0]) <= radius) & (std::abs(box.ymin - centre.y() - at[1]) <= radius) &
+           (std::abs(box.xmax - centre.x() - at[2]) <= radius) & (std::abs(box.ymax - centre.y() - at[3]) <= radius);
+}
+
+void find_escaped_plain(std::span<const Box> boxes, const Vec2& centre, const Regions& regions, int begin, int end,
+                        std::vector<int>& escaped) {
+    for (int i = begin; i < end; ++i)
+        if (!inside(boxes[i], centre, &regions.at[4 * static_cast<std::size_t>(i)], regions.radius[i])) escaped.push_back(i);
+}
+
+// Without branches: of two watched boxes nobody can predict which side keeps them apart.
+bool overlapping(const Box& a, const Box& b) {
+    return (a.xmin <= b.xmax) & (b.xmin <= a.xmax) & (a.ymin <= b.ymax) & (b.ymin <= a.ymax);
+}
+
+void compare_plain(std::span<const Box> boxes, int word, NeighbourLists& lists) {
+    for (std::uint64_t left = lists.watching()[word]; left != 0; left &= left - 1) {
+        const int i = 64 * word + std::countr_zero(left);
+        for (Neighbour& n : lists.watched_by(i)) n.set_overlaps(overlapping(boxes[i], boxes[n.box()]));
+    }
+}
+
+constexpr Kernels plain{find_escaped_plain, compare_plain};
+
+// ---- AVX-512
+// --------------------------------------------------------------------------------------------------------------
+
+#if defined(__x86_64__) && defined(__GNUC__)
+
+// Eight boxes at a time, two in a register, four bits of the mask for each.
+[[gnu::target("avx512f")]] void find_escaped_avx512(std::span<const Box> boxes, const Vec2& centre, const Regions& regions,
+                                                    int begin, int end, std::vector<int>& escaped) {
+    const __m512d middle =
+        _mm512_setr_pd(centre.x(), centre.y(), centre.x(), centre.y(), centre.x(), centre.y(), centre.x(), centre.y());
+    const __m512i first_two = _mm512_setr_epi64(0, 0, 0, 0, 1, 1, 1, 1);
+    int i = begin;
+    for (; i + 8 <= end; i += 8) {
+        const __m512d radius = _mm512_cvtps_pd(_mm256_loadu_ps(&regions.radius[i]));
+        std::uint32_t outside = 0;
+        for (int k = 0; k < 4; ++k) {
+            const std::size_t box = static_cast<std::size_t>(i) + 2 * k;
+            const __m512d reference = _mm512_cvtps_pd(_mm256_loadu_ps(&regions.at[4 * box]));
+            const __m512d bounds = _mm512_sub_pd(_mm512_loadu_pd(&boxes[box].xmin), middle);
+            const __m512d moved = _mm512_abs_pd(_mm512_sub_pd(bounds, reference));
+            const __m512i lanes = _mm512_add_epi64(first_two, _mm512_set1_epi64(2 * k));
+            const __m512d limit = _mm512_permutexvar_pd(lanes, radius);
+            outside |= static_cast<std::uint32_t>(_mm512_cmp_pd_mask(moved, limit, _CMP_NLE_UQ)) << (8 * k);
+        }
+        while (outside != 0) {
+            const int box = std::countr_zero(outside) / 4;
+            escaped.push_back(i + box);
+            outside &= ~(15u << (4 * box));
+        }
+    }
+    find_escaped_plain(boxes, centre, regions, i, end, escaped);
+}
+
+// Four pairs at a time, two in a register: most boxes watch no more, so that the loop has no end to guess. Bounds of the
+// second of a pair change places and those that bound from above their sign: all four must then be smaller or equal.
+[[gnu::target("avx512f,avx512dq,avx512vl,bmi2")]] void compare_avx512(std::span<const Box> boxes, int word,
+                                                                      NeighbourLists& lists) {
+    static_assert(sizeof(Neighbour) == 4 && sizeof(Box) == 32);
+    const __m512d sign = _mm512_setr_pd(0.0, 0.0, -0.0, -0.0, 0.0, 0.0, -0.0, -0.0);
+    const __m128i number = _mm_set1_epi32((1 << 30) - 1), without_flag = _mm_set1_epi32(0x7fffffff);
+    const __m128i flag = _mm_set1_epi32(static_cast<int>(0x80000000u));
+    for (std::uint64_t left = lists.watching()[word]; left != 0; left &= left - 1) {
+        const int i = 64 * word + std::countr_zero(left);
+        const auto watched = lists.watched_by(i);
+        const __m512d bounds = _mm512_xor_pd(_mm512_broadcast_f64x4(_mm256_loadu_pd(&boxes[i].xmin)), sign);
+        for (std::size_t k = 0; k < watched.size(); k += 4) {
+            const auto there = static_cast<__mmask8>(_bzhi_u32(15u, static_cast<std::uint32_t>(watched.size() - k)));
+            auto* entries = reinterpret_cast<int*>(&watched[k]);
+            const __m128i old = _mm_maskz_loadu_epi32(there, entries);  // beyond the last: box 0
+            const __m128i box = _mm_and_si128(old, number);
+            const auto two = [&](int first, int second) __attribute__((target("avx512f,avx512dq,avx512vl,bmi2"))) {
+                const __m512d both = _mm512_insertf64x4(_mm512_castpd256_pd512(_mm256_loadu_pd(&boxes[first].xmin)),
+                                                        _mm256_loadu_pd(&boxes[second].xmin), 1);
+                const __m512d other = _mm512_xor_pd(_mm512_permutex_pd(both, 0x4e), sign);
+                return static_cast<std::uint32_t>(_mm512_cmp_pd_mask(bounds, other, _CMP_LE_OQ));
+            };
+            const std::uint32_t smaller = two(_mm_cvtsi128_si32(box), _mm_extract_epi32(box, 1)) |
+                                          two(_mm_extract_epi32(box, 2), _mm_extract_epi32(box, 3)) << 8;
+            const std::uint32_t all_four = smaller & (smaller >> 1) & (smaller >> 2) & (smaller >> 3);
+            const auto overlaps = static_cast<__mmask8>(_pext_u32(all_four, 0x1111u));
+            const __m128i apart = _mm_and_si128(old, without_flag);
+            _mm_mask_storeu_epi32(entries, there, _mm_mask_or_epi32(apart, overlaps, apart, flag));
+        }
+    }
+}
+
+bool has_avx512() {
+    return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl") &&
+           __builtin_cpu_supports("bmi2");
+}
+
+const Kernels best = has_avx512() ? Kernels{find_escaped_avx512, compare_avx512} : plain;
+#else
+const Kernels best = plain;
+#endif
+
+}  // namespace
+
+void find_escaped(std::span<const Box> boxes, const Vec2& centre, const Regions& regions, int begin, int end,
+                  std::vector<int>& escaped) {
+    best.find_escaped(boxes, centre, regions, begin, end, escaped);
+}
+
+void compare_watched(std::span<const Box> boxes, int word, NeighbourLists& lists) {
+    best.compare_watched(boxes, word, lists);
+}
+
+}  // namespace talus
