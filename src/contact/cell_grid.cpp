@@ -23,7 +23,9 @@ void CellGrid::reset(int n, double width, double typical) {
 int CellGrid::level_of(const CoarseBox& box) const {
     const double size = std::max(static_cast<double>(box.xmax) - box.xmin, static_cast<double>(box.ymax) - box.ymin);
     const double cells = 0.5 * size * level_[0].per_cell;
-    if (!(cells < std::ldexp(1.0, level_count - 2))) return outsized;
+    const float far =
+        std::max(std::max(std::abs(box.xmin), std::abs(box.xmax)), std::max(std::abs(box.ymin), std::abs(box.ymax)));
+    if (!(cells < std::ldexp(1.0, level_count - 2)) || far > 1e30F) return outsized;
     return cells <= 1.0 ? 0 : std::ilogb(cells) + 1;
 }
 

@@ -36,7 +36,7 @@ int thread_count() {
 #endif
 }
 
-// The smallest of the four differences that are all >= 0 for closed boxes that overlap. Its sign is exact.
+// The smallest of the four differences that are all >= 0 for closed boxes that overlap.
 double overlap(const Box& a, const Box& b) {
     return std::min(std::min(b.xmax - a.xmin, a.xmax - b.xmin), std::min(b.ymax - a.ymin, a.ymax - b.ymin));
 }
@@ -130,7 +130,8 @@ private:
     }
 
     void move_reference(int i, const Box& b) {
-        track_[i] = {static_cast<float>(speed(i, b)), step_};
+        const double speed = this->speed(i, b);
+        track_[i] = {speed < far_ ? static_cast<float>(speed) : 0.0F, step_};
         float* at = &regions_.at[4 * static_cast<std::size_t>(i)];
         at[0] = static_cast<float>(b.xmin), at[1] = static_cast<float>(b.ymin);
         at[2] = static_cast<float>(b.xmax), at[3] = static_cast<float>(b.ymax);
@@ -149,6 +150,12 @@ private:
                         std::min(b.ymin - outer.ymin, outer.ymax - b.ymax));
     }
 
+    /// Whether a box is so far inside its coarse box that it need not be listed anew.
+    static bool stays(const CoarseBox& outer, const Box& b) {
+        const double left = slack(outer, b);
+        return left >= 0.0 && left >= 0.3 * margin_of(outer, b);
+    }
+
     static double margin_of(const CoarseBox& outer, const Box& b) {
         return 0.5 * std::min(outer.xmax - outer.xmin - (b.xmax - b.xmin), outer.ymax - outer.ymin - (b.ymax - b.ymin));
     }
@@ -156,7 +163,8 @@ private:
     /// Coarse boxes so large that fast boxes are listed anew every some twenty steps, and slow ones hardly ever. Margins
     /// differ a little from box to box, so that boxes that move together do not all come at the same step.
     double margin(int i, const Box& b) const {
-        const double size = std::min(std::max(b.xmax - b.xmin, b.ymax - b.ymin) + 0.1 * typical_, typical_);
+        const double own = std::max(b.xmax - b.xmin, b.ymax - b.ymin) + 0.1 * typical_;
+        const double size = own < typical_ ? own : typical_;
         const double wanted = std::sqrt(margin_growth * track_[i].speed * size);
         const double varied = 0.75 + 0.5 * ((static_cast<std::uint32_t>(i) * 2654435769u) >> 8) * 0x1p-24;
         return varied * std::clamp(wanted, 0.06 * size, 0.5 * size);
@@ -202,7 +210,7 @@ private:
         if (!present(boxes_[i])) return take_out(i);
         const Box b = seen(i);
         move_reference(i, b);
-        if (!grid_.holds(i) || !(slack(grid_.box(i), b) >= 0.3 * margin_of(grid_.box(i), b))) list(i, b);
+        if (!grid_.holds(i) || !stays(grid_.box(i), b)) list(i, b);
         set_region(i, reconsider);
     }
 
@@ -212,12 +220,13 @@ private:
         double radius = slack(grid_.box(i), mine) - guard_;
         for_each_neighbour(i, [&](int j, bool was, bool watched) {
             if (watched && !reconsider) return;
-            const double now = overlap(boxes_[i], boxes_[j]);
-            if (watched ? calm(i, j, now) : (now >= 0.0) != was) {
-                set(i, j, now >= 0.0, false);
+            const bool overlaps = boxes_[i].overlaps(boxes_[j]);
+            const double room = std::abs(overlap(boxes_[i], boxes_[j]));
+            if (watched ? calm(i, j, room) : overlaps != was) {
+                set(i, j, overlaps, false);
                 watched = false;
             }
-            if (!watched) radius = std::min(radius, share(i, mine, j, now));
+            if (!watched) radius = std::min(radius, share(i, mine, j, overlaps, room));
         });
         regions_.radius[i] = ordinary(mine) ? rounded_down(radius) : -1.0F;
     }
@@ -227,32 +236,31 @@ private:
 
     /// Whether a pair need not be watched any more. Twice the distance at which watching begins: a pair between the two
     /// would change sides at every look.
-    bool calm(int i, int j, double now) const { return std::abs(now) > 2.0 * patience * closing(i, j) + guard_; }
+    bool calm(int i, int j, double room) const {
+        return room > 2.0 * patience * closing(i, j) + guard_ && ordinary(reference(i)) && ordinary(reference(j));
+    }
 
     // What the pair with j leaves i for its radius; infinite if the pair is better watched.
-    double share(int i, const Box& mine, int j, double now) {
-        const double left = std::abs(now);
-        if (!(left > patience * closing(i, j))) return watch(i, j, now >= 0.0);
+    double share(int i, const Box& mine, int j, bool overlaps, double room) {
         Box other = reference(j);
-        double room = certain(mine, other, now);
-        if (room - regions_.radius[j] >= 0.5 * left) return room - regions_.radius[j];
+        if (!(room > patience * closing(i, j) && ordinary(mine) && ordinary(other))) return watch(i, j, overlaps);
+        double certain = this->certain(mine, other, overlaps);
+        const double taken = std::max(regions_.radius[j], 0.0F);
+        if (certain - taken >= 0.5 * room) return certain - taken;
         // The region of j takes too much: it shrinks to a ball within itself, around where j is now.
         move_reference(j, seen(j));
         const double kept = regions_.radius[j] - farthest(reference(j), other) - guard_;
         other = reference(j);
-        room = certain(mine, other, now);
-        if (!(room >= 0.0)) {
-            regions_.radius[j] = rounded_down(kept);
-            return watch(i, j, now >= 0.0);
-        }
-        regions_.radius[j] = rounded_down(std::min(kept, 0.5 * room));
-        return room - std::max(regions_.radius[j], 0.0F);
+        certain = this->certain(mine, other, overlaps);
+        regions_.radius[j] = rounded_down(certain >= 0.0 ? std::min(kept, 0.5 * certain) : kept);
+        if (!(certain >= 0.0)) return watch(i, j, overlaps);
+        return certain - std::max(regions_.radius[j], 0.0F);
     }
 
     /// m: how much two boxes may change from their references before their pair can change; negative if it can at once.
-    double certain(const Box& a, const Box& b, double now) const {
+    double certain(const Box& a, const Box& b, bool overlaps) const {
         const double o = overlap(a, b);
-        return (o >= 0.0) == (now >= 0.0) ? std::abs(o) - guard_ : -1.0;
+        return (o >= 0.0) == overlaps ? std::abs(o) - guard_ : -1.0;
     }
 
     double watch(int i, int j, bool overlaps) {
@@ -272,7 +280,7 @@ private:
 
     void reconsider(int i) {
         for (const Neighbour n : lists_.watched_by(i))
-            if (calm(i, n.box(), overlap(boxes_[i], boxes_[n.box()]))) return look_at(i, true);
+            if (calm(i, n.box(), std::abs(overlap(boxes_[i], boxes_[n.box()])))) return look_at(i, true);
     }
 
     // ---- lists of neighbours -----------------------------------------------------------------------------------------
@@ -381,8 +389,8 @@ private:
         double radius = slack(grid_.box(i), mine) - guard_;
         for_each_neighbour(i, [&](int j, bool overlaps, bool watched) {
             if (watched) return;
-            const double room = certain(mine, reference(j), overlaps ? 1.0 : -1.0);
-            if (room > patience * closing(i, j))
+            const double room = certain(mine, reference(j), overlaps);
+            if (room > patience * closing(i, j) && ordinary(mine) && ordinary(reference(j)))
                 radius = std::min(radius, 0.5 * room);
             else
                 watch(i, j, overlaps);
