@@ -42,6 +42,15 @@ struct BenchSearchArguments {
 };
 int bench_search_command(const BenchSearchArguments& arguments);
 
+struct BenchStepArguments {
+    std::vector<std::string> scenarios, overrides;
+    std::vector<int> threads{1};
+    int steps = 200, repeat = 5;
+    std::string from, csv;
+    bool force = false;
+};
+int bench_step_command(const BenchStepArguments& arguments);
+
 int info_command(const std::string& results);
 int export_command(const std::string& results, const std::string& folder);
 

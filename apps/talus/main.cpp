@@ -30,11 +30,8 @@ void add_overrides(CLI::App& command, std::vector<std::string>& overrides) {
     shorthand("--until", "run.until.time", "s, length of the run");
 }
 
-void add_bench(CLI::App& app, BenchSearchArguments& search, std::function<int()>& command) {
-    CLI::App* bench_app = app.add_subcommand("bench", "how long things take, on this machine");
-    bench_app->require_subcommand(1);
-
-    CLI::App* search_app = bench_app->add_subcommand("search", "contact searches timed and checked on recorded motion");
+void add_bench_search(CLI::App& bench_app, BenchSearchArguments& search, std::function<int()>& command) {
+    CLI::App* search_app = bench_app.add_subcommand("search", "contact searches timed and checked on recorded motion");
     search_app->add_option("scenarios", search.scenarios,
                            "scenarios to run and record; default: those of scenarios/benchmark");
     search_app->add_option("--trajectory", search.trajectories, "recorded motion (BPTRAJ01), instead of a scenario")
@@ -56,6 +53,19 @@ void add_bench(CLI::App& app, BenchSearchArguments& search, std::function<int()>
     search_app->add_option("--set", search.overrides, "PATH=VALUE: change any key of the scenarios")
         ->allow_extra_args(false);
     search_app->callback([&] { command = [&] { return bench_search_command(search); }; });
+}
+
+void add_bench_step(CLI::App& bench_app, BenchStepArguments& step, std::function<int()>& command) {
+    CLI::App* step_app = bench_app.add_subcommand("step", "time per block and step by its parts, and memory");
+    step_app->add_option("scenarios", step.scenarios, "scenario files (YAML)")->required();
+    step_app->add_option("--threads", step.threads, "numbers with commas; default 1")->delimiter(',');
+    step_app->add_option("--steps", step.steps, "steps in a segment; default 200");
+    step_app->add_option("--repeat", step.repeat, "segments for each number of threads; default 5");
+    step_app->add_option("--from", step.from, "time from this time (s, as results count it) or stage; default 0");
+    step_app->add_option("-o,--output", step.csv, "table as CSV");
+    step_app->add_flag("--force", step.force, "replace an existing file instead of choosing a numbered name");
+    step_app->add_option("--set", step.overrides, "PATH=VALUE: change any key of the scenarios")->allow_extra_args(false);
+    step_app->callback([&] { command = [&] { return bench_step_command(step); }; });
 }
 
 int program(int argc, char** argv) {
@@ -108,8 +118,12 @@ int program(int argc, char** argv) {
     add_overrides(*verify_app, verify.overrides);
     verify_app->callback([&] { command = [&] { return verify_command(verify); }; });
 
+    CLI::App* bench_app = app.add_subcommand("bench", "how long things take on this machine");
+    bench_app->require_subcommand(1);
     BenchSearchArguments bench_search;
-    add_bench(app, bench_search, command);
+    add_bench_search(*bench_app, bench_search, command);
+    BenchStepArguments bench_step;
+    add_bench_step(*bench_app, bench_step, command);
 
     try {
         app.parse(argc, argv);

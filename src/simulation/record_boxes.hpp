@@ -3,8 +3,8 @@
 
 #include "output/trajectory.hpp"
 #include "scenario/scenario.hpp"
+#include "simulation/advance.hpp"
 
-#include <functional>
 #include <string>
 
 namespace talus {
@@ -12,12 +12,11 @@ namespace talus {
 struct RecordBoxes {
     int steps = 200;   // in the trajectory
     int every = 1;     // time steps of the run from one to the next
-    std::string from;  // name of the stage, or time in s as results count it, at which it begins; empty: 0
+    std::string from;  // the Moment at which it begins
 };
 
 /// Runs the scenario as far as needed and records the boxes of all convex parts, without skin. Shorter if the run ends
 /// before. Throws InputError if the run ends before anything is recorded or the boxes do not fit into memory.
-Trajectory record_boxes(const Scenario& scenario, const RecordBoxes& what,
-                        const std::function<void(const std::string&)>& say);
+Trajectory record_boxes(const Scenario& scenario, const RecordBoxes& what, const Say& say);
 
 }  // namespace talus

@@ -5,10 +5,7 @@
 #include "core/stopwatch.hpp"
 #include "core/text.hpp"
 #include "simulation/search_replay.hpp"
-
-#ifdef _OPENMP
-#include <omp.h>
-#endif
+#include "simulation/threads.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -21,21 +18,6 @@ namespace {
 
 constexpr std::size_t direct_affordable = 20'000;        // boxes: 0.1 s per step
 constexpr std::size_t direct_affordable_once = 200'000;  // 10 s
-constexpr int most_threads = 1024;
-
-/// Puts the number of threads back to what it was.
-class ThreadsKept {
-#ifdef _OPENMP
-public:
-    ThreadsKept() : before_(omp_get_max_threads()) {}
-    ~ThreadsKept() { omp_set_num_threads(before_); }
-    ThreadsKept(const ThreadsKept&) = delete;
-    ThreadsKept& operator=(const ThreadsKept&) = delete;
-
-private:
-    int before_;
-#endif
-};
 
 std::string name_of(const SearchCost& cost) {
     return cost.method + (cost.threads > 1 ? ", " + std::to_string(cost.threads) + " threads" : "") +
@@ -184,10 +166,7 @@ std::size_t largest_by_default(const std::string& method) {
 
 void check_bench(const SearchBench& bench) {
     for (const std::string& method : bench.methods) make_search_or_bound(method);
-    for (const int threads : bench.threads)
-        if (threads < 1 || threads > most_threads)
-            throw InputError("threads: " + std::to_string(threads) + " is not between 1 and " +
-                             std::to_string(most_threads));
+    for (const int threads : bench.threads) check_threads(threads);
     for (const double skin : bench.skins)
         if (!(skin >= 0.0 && std::isfinite(skin))) throw InputError("skin: " + number(skin) + " m is not 0 or more");
     if (bench.repeat < 1) throw InputError("repeat: " + std::to_string(bench.repeat) + " is not 1 or more");

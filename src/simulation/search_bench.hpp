@@ -2,8 +2,8 @@
 #pragma once
 
 #include "output/trajectory.hpp"
+#include "simulation/advance.hpp"
 
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -48,8 +48,6 @@ std::size_t largest_by_default(const std::string& method);
 
 /// Throws InputError for a method, number of threads, skin or repetition that cannot be.
 void check_bench(const SearchBench& bench);
-
-using Say = std::function<void(const std::string&)>;
 
 /// Methods x threads x skins, in that order. Throws InputError if the trajectory has one step only.
 std::vector<SearchCost> time_searches(const Trajectory& trajectory, const SearchBench& bench, const Say& say);

@@ -1,5 +1,7 @@
 #include "simulation/search_replay.hpp"
 
+#include "simulation/threads.hpp"
+
 #ifdef _OPENMP
 #include <omp.h>
 #endif
@@ -39,11 +41,7 @@ SearchReplay::SearchReplay(const std::string& method, int threads, double skin, 
     search_ = make_search_or_bound(method);
 }
 
-void SearchReplay::use_my_threads() const {
-#ifdef _OPENMP
-    omp_set_num_threads(threads_);
-#endif
-}
+void SearchReplay::use_my_threads() const { use_threads(threads_); }
 
 bool SearchReplay::advance(std::span<const Box> boxes) {
     if (skin_ > 0.0) {

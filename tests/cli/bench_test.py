@@ -9,6 +9,8 @@ from program import INCLINE, SLOPE, Program, main
 
 COLUMNS = ("scene,boxes,steps,method,threads,skin,ns_per_box_median,ns_per_box_q1,ns_per_box_q3,ns_per_box_mean,"
            "ns_per_box_max,first_ns_per_box,list_ns_per_box,exchanges_per_box,pairs_per_box,bytes_per_box,wrong_steps").split(",")
+STEP_COLUMNS = ("scene,blocks,parts,contacts,threads,steps,ns_per_block_and_step,move,place,search,contacts_part,sum,account,"
+                "refreshes,bytes_per_block,build_s").split(",")
 METHODS = {"direct", "dess", "isu", "read"}
 
 
@@ -75,6 +77,22 @@ class Bench(Program):
         self.assertEqual([row["wrong_steps"] for row in self.table("a-2.csv")], [""])  # and the earlier table is kept
         self.assertEqual(len(self.table("a.csv")), len(METHODS | {row["method"] for row in self.table("a.csv")}))
 
+    def test_the_parts_of_a_step_add_up_for_every_number_of_threads(self):
+        self.write("slope.yaml", SLOPE)
+        self.write("incline.yaml", INCLINE)
+        out, _ = self.talus("bench", "step", "slope.yaml", "incline.yaml", "--threads", "1,2", "--steps", "20", "--repeat", "2",
+                            "--from", "0.01", "--set", "run.until.time=1", "-o", "table.csv")
+        rows = self.table("table.csv")
+        self.assertEqual(list(rows[0]), STEP_COLUMNS)
+        self.assertEqual([(row["scene"], row["threads"], row["steps"]) for row in rows],
+                         [(scene, threads, "40") for scene in ("slope", "incline") for threads in "12"])
+        for row in rows:
+            parts = [float(row[name]) for name in STEP_COLUMNS[7:13]]
+            self.assertGreater(min(parts), 0.0)
+            self.assertAlmostEqual(sum(parts), float(row["ns_per_block_and_step"]), delta=1e-4 * sum(parts))
+        self.assertEqual((rows[2]["blocks"], rows[2]["parts"], rows[2]["contacts"]), ("2", "2", "1"))
+        self.assertIn("slope: ", out)
+
     def test_a_trajectory_that_is_none(self):
         good = trajectory([[(0, 0, 1, 1), (1, 0, 2, 1)]] * 3)
         nan = trajectory([[(0, 0, 1, 1), (1, 0, 2, 1)], [(0, 0, 1, 1), (1, 0, math.nan, 1)]])
@@ -112,12 +130,17 @@ class Bench(Program):
                     self.refused(*command, *options, report=report)
         self.refused("search", "none.yaml", report="none.yaml")
         self.refused("search", "slope.yaml", "--set", "gravty=1", report="gravty: .*gravity")
-        self.refused("search", "slope.yaml", "--steps", "0", report="steps")
+        self.refused("search", "slope.yaml", "--steps", "0", report="steps: 0")
         self.refused("search", "slope.yaml", "--from", "later", report=r"'later' is neither .*; there are: run")
-        self.refused("search", "slope.yaml", "--from", "7", report="before recording begins")
+        self.refused("search", "slope.yaml", "--from", "7", report=r"the run ends at t = 0\.1 s, before 7")
         self.refused("search", "slope.yaml", "slope.yaml", "--record", "a.bpt", report="--record")
         self.refused("search", "slope.yaml", "--record", "no/a.bpt", report=r"no/a\.bpt: cannot be written")
+        self.refused("step", "slope.yaml", "--steps", "100000", report=r"the run ends after \d+ steps")
+        for options, report in ((("--threads", "0"), "threads: 0"), (("--steps", "0"), "steps: 0"), (("--repeat", "-1"), "repeat: -1"),
+                                (("--from", "later"), "'later'"), (("-o", "no/a.csv"), r"no/a\.csv: cannot be written")):
+            self.refused("step", "slope.yaml", *options, report=report)
         self.talus("bench", code=2)
+        self.talus("bench", "step", code=2)
 
 
 if __name__ == "__main__":

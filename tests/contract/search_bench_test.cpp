@@ -128,7 +128,7 @@ run: {until: {time: 0.5}, time_step: 1e-2, unchecked: true}
     for (std::size_t f = 0; f < 5; ++f) CHECK(lowest(part, f) == Approx(fall(0.2 + 0.1 * f)).margin(1e-9));
 
     CHECK(lowest(record_boxes(scenario, {1, 1, "run"}, nobody), 0) == Approx(fall(0.5)).margin(1e-9));
-    CHECK_THROWS_WITH(record_boxes(scenario, {1, 1, "3"}, nobody), Catch::Contains("before recording begins"));
+    CHECK_THROWS_WITH(record_boxes(scenario, {1, 1, "3"}, nobody), Catch::Contains("the run ends at t = 1 s, before 3"));
     CHECK_THROWS_WITH(record_boxes(scenario, {1, 1, "settle"}, nobody), Catch::Contains("there are: first, run"));
     CHECK_THROWS_WITH(record_boxes(scenario, {2'000'000'000, 1, ""}, nobody), Catch::Contains("too much for memory"));
 }
