@@ -39,7 +39,8 @@ void add_bench_search(CLI::App& bench_app, BenchSearchArguments& search, std::fu
     search_app->add_option("--record", search.record, "keep what was recorded in this file");
     search_app->add_option("--steps", search.steps, "steps to record; default 200");
     search_app->add_option("--every", search.every, "time steps of the run from one recorded step to the next; default 1");
-    search_app->add_option("--from", search.from, "record from this time (s, as results count it) or stage; default 0");
+    search_app->add_option("--from", search.from,
+                           "record from this time (s, as results count it) or stage; default the last stage");
     search_app
         ->add_option("--methods", search.methods, "names with commas; `read`: the bound; none: record only; default all")
         ->delimiter(',');
@@ -61,7 +62,8 @@ void add_bench_step(CLI::App& bench_app, BenchStepArguments& step, std::function
     step_app->add_option("--threads", step.threads, "numbers with commas; default 1")->delimiter(',');
     step_app->add_option("--steps", step.steps, "steps in a segment; default 200");
     step_app->add_option("--repeat", step.repeat, "segments for each number of threads; default 5");
-    step_app->add_option("--from", step.from, "time from this time (s, as results count it) or stage; default 0");
+    step_app->add_option("--from", step.from,
+                         "time from this time (s, as results count it) or stage; default the last stage");
     step_app->add_option("-o,--output", step.csv, "table as CSV");
     step_app->add_flag("--force", step.force, "replace an existing file instead of choosing a numbered name");
     step_app->add_option("--set", step.overrides, "PATH=VALUE: change any key of the scenarios")->allow_extra_args(false);

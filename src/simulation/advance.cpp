@@ -12,7 +12,6 @@ namespace {
 constexpr const char* last_stage = "run";
 
 std::optional<double> as_time(const std::string& text) {
-    if (text.empty()) return 0.0;
     double value = 0.0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value) || value < 0.0) return {};
@@ -22,6 +21,7 @@ std::optional<double> as_time(const std::string& text) {
 }  // namespace
 
 Moment::Moment(const Scenario& scenario, const std::string& text) : text_(text), time_(as_time(text)) {
+    if (text.empty()) return;
     std::string names;
     for (const StageSpec& stage : scenario.stages) {
         if (stage.name == text) return;
@@ -33,6 +33,7 @@ Moment::Moment(const Scenario& scenario, const std::string& text) : text_(text),
 
 bool Moment::reached(const Simulation& simulation) const {
     if (time_) return simulation.recorded() && simulation.state().time >= *time_ * (1.0 - 1e-12);
+    if (text_.empty()) return simulation.state().stage + 1 == simulation.stage_count();
     return simulation.stage().name == text_;
 }
 

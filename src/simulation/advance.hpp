@@ -11,7 +11,7 @@ namespace talus {
 
 using Say = std::function<void(const std::string&)>;  // what is being done, for who waits
 
-/// A moment of a run: a time in s as results count it, or the begin of a stage by its name; empty: time 0.
+/// A moment of a run: a time in s as results count it, or the begin of a stage by its name; empty: of the last stage.
 class Moment {
 public:
     /// Throws InputError if it is neither a time nor a stage of the scenario.

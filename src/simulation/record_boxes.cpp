@@ -14,7 +14,7 @@ Trajectory record_boxes(const Scenario& scenario, const RecordBoxes& what, const
     check_trajectory_fits(std::to_string(trajectory.boxes) + " boxes x " + std::to_string(what.steps) + " steps",
                           static_cast<double>(trajectory.boxes), what.steps);
     advance_to(simulation, from, say);
-    trajectory.dt = what.every * simulation.time_step();
+    trajectory.dt = what.every * simulation.state().stage_step;
     trajectory.all.reserve(trajectory.boxes * what.steps);
     std::vector<Box> boxes;
     for (std::int64_t taken = 0;; ++taken) {

@@ -6,6 +6,7 @@
 #include <omp.h>
 #endif
 
+#include <algorithm>
 #include <bit>
 #include <cstdint>
 
@@ -55,16 +56,24 @@ bool SearchReplay::advance(std::span<const Box> boxes) {
     return true;
 }
 
+// Without branches, two coordinates at a time: it is all that most steps with a skin cost.
 bool SearchReplay::left(std::span<const Box> boxes) const {
     const auto n = static_cast<std::ptrdiff_t>(boxes.size());
-    bool outside = false;
-#pragma omp parallel for schedule(static) reduction(|| : outside) if (threads_ > 1)
-    for (std::ptrdiff_t i = 0; i < n; ++i) {
-        const Box &b = boxes[i], &g = grown_[i];
-        if (b.xmin < g.xmin || b.ymin < g.ymin || b.xmax > g.xmax || b.ymax > g.ymax || present(b) != present(g))
-            outside = true;
+    const Eigen::Array4d inward(1.0, 1.0, -1.0, -1.0);
+    double deepest = 0.0;       // m, < 0 if some side lies outside the grown one
+    std::int64_t vanished = 0;  // or come back, which the sides show as well
+#pragma omp parallel reduction(min : deepest) reduction(+ : vanished) if (threads_ > 1)
+    {
+        Eigen::Array4d inside = Eigen::Array4d::Zero();
+#pragma omp for schedule(static)
+        for (std::ptrdiff_t i = 0; i < n; ++i) {
+            const Eigen::Map<const Eigen::Array4d> now(&boxes[i].xmin), grown(&grown_[i].xmin);
+            inside = inside.min((now - grown) * inward);
+            vanished += (boxes[i].xmin <= boxes[i].xmax) != (grown_[i].xmin <= grown_[i].xmax);
+        }
+        deepest = std::min(deepest, inside.minCoeff());
     }
-    return outside;
+    return deepest < 0.0 || vanished > 0;
 }
 
 void SearchReplay::grow(std::span<const Box> boxes) {
