@@ -10,6 +10,7 @@
 #include "simulation/search_bench.hpp"
 
 #include <algorithm>
+#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <sstream>
@@ -104,6 +105,7 @@ Trajectory record(const Scenario& scenario, const std::string& scene, const Benc
 }  // namespace
 
 int bench_search_command(const BenchSearchArguments& arguments) {
+    std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is for the writer to find out, not a reason to die
     const SearchBench bench = bench_of(arguments);
     std::vector<std::string> files = arguments.scenarios;
     if (files.empty() && arguments.trajectories.empty()) files = scenario_files(default_scenarios);

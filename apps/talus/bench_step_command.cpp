@@ -6,6 +6,7 @@
 #include "scenario/reader.hpp"
 #include "simulation/step_bench.hpp"
 
+#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <string_view>
@@ -51,6 +52,7 @@ void write_csv(const std::string& path, const std::vector<Measured>& all, int st
 }  // namespace
 
 int bench_step_command(const BenchStepArguments& arguments) {
+    std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is for the writer to find out, not a reason to die
     std::vector<Scenario> scenarios;
     for (const std::string& file : arguments.scenarios) scenarios.push_back(read_scenario(file, arguments.overrides));
     const std::string csv = arguments.csv.empty() ? "" : choose_output_path(arguments.csv, arguments.force);

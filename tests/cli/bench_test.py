@@ -2,6 +2,7 @@
 
 import csv
 import math
+import resource
 import struct
 import unittest
 
@@ -116,6 +117,17 @@ class Bench(Program):
                 self.refused("search", "--trajectory", "good.bpt", "--trajectory", "bad.bpt", "-o", "a.csv",
                              report=r"^(bad\.bpt: )?.*" + report)
         self.refused("search", "--trajectory", "none.bpt", "-o", "a.csv", report=r"^none\.bpt: cannot be read")
+
+    def test_a_disk_that_is_full(self):
+        self.write("slope.yaml", SLOPE)
+        command = ("bench", "search", "slope.yaml", "--steps", "20", "--methods", "isu", "--repeat", "1")
+        self.talus(*command, "--record", "whole.bpt", "-o", "whole.csv")
+        before = self.files()
+        for size, options in ((10_000, ("--record", "a.bpt")), (100, ("-o", "a.csv"))):
+            _, err = self.talus(*command, *options, code=4,
+                                preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (size, size)))
+            self.assertRegex(err, rf"^output failed: {options[1]}: cannot be written: ")
+            self.assertEqual(self.files(), before)
 
     def test_faults_of_the_command_line(self):
         self.write("slope.yaml", INCLINE)
