@@ -32,6 +32,25 @@ struct VerifyArguments {
 };
 int verify_command(const VerifyArguments& arguments);
 
+struct BenchSearchArguments {
+    std::vector<std::string> scenarios, trajectories, overrides, methods;
+    std::vector<int> threads{1};
+    std::vector<double> skins{0.0};  // m
+    int steps = 200, every = 1, repeat = 5;
+    std::string from, record, csv;
+    bool no_check = false, check_direct = false, force = false;
+};
+int bench_search_command(const BenchSearchArguments& arguments);
+
+struct BenchStepArguments {
+    std::vector<std::string> scenarios, overrides;
+    std::vector<int> threads{1};
+    int steps = 200, repeat = 5;
+    std::string from, csv;
+    bool force = false;
+};
+int bench_step_command(const BenchStepArguments& arguments);
+
 int info_command(const std::string& results);
 int export_command(const std::string& results, const std::string& folder);
 

@@ -30,6 +30,46 @@ void add_overrides(CLI::App& command, std::vector<std::string>& overrides) {
     shorthand("--until", "run.until.time", "s, length of the run");
 }
 
+void add_bench_search(CLI::App& bench_app, BenchSearchArguments& search, std::function<int()>& command) {
+    CLI::App* search_app = bench_app.add_subcommand("search", "contact searches timed and checked on recorded motion");
+    search_app->add_option("scenarios", search.scenarios,
+                           "scenarios to run and record; default: those of scenarios/benchmark");
+    search_app->add_option("--trajectory", search.trajectories, "recorded motion (BPTRAJ01), instead of a scenario")
+        ->allow_extra_args(false);
+    search_app->add_option("--record", search.record, "keep what was recorded in this file");
+    search_app->add_option("--steps", search.steps, "steps to record; default 200");
+    search_app->add_option("--every", search.every, "time steps of the run from one recorded step to the next; default 1");
+    search_app->add_option("--from", search.from,
+                           "record from this time (s, as results count it) or stage; default the last stage");
+    search_app
+        ->add_option("--methods", search.methods, "names with commas; `read`: the bound; none: record only; default all")
+        ->delimiter(',');
+    search_app->add_option("--threads", search.threads, "numbers with commas; default 1")->delimiter(',');
+    search_app->add_option("--skin", search.skins, "m, numbers with commas; default 0")->delimiter(',');
+    search_app->add_option("--repeat", search.repeat, "of each step the fastest of so many counts; default 5");
+    search_app->add_flag("--no-check", search.no_check, "do not compare the pairs with a reference");
+    search_app->add_flag("--check-direct", search.check_direct, "compare with `direct` at every step, whatever it takes");
+    search_app->add_option("-o,--output", search.csv, "table as CSV");
+    search_app->add_flag("--force", search.force, "replace existing files instead of choosing a numbered name");
+    search_app->add_option("--set", search.overrides, "PATH=VALUE: change any key of the scenarios")
+        ->allow_extra_args(false);
+    search_app->callback([&] { command = [&] { return bench_search_command(search); }; });
+}
+
+void add_bench_step(CLI::App& bench_app, BenchStepArguments& step, std::function<int()>& command) {
+    CLI::App* step_app = bench_app.add_subcommand("step", "time per block and step by its parts, and memory");
+    step_app->add_option("scenarios", step.scenarios, "scenario files (YAML)")->required();
+    step_app->add_option("--threads", step.threads, "numbers with commas; default 1")->delimiter(',');
+    step_app->add_option("--steps", step.steps, "steps in a segment; default 200");
+    step_app->add_option("--repeat", step.repeat, "segments for each number of threads; default 5");
+    step_app->add_option("--from", step.from,
+                         "time from this time (s, as results count it) or stage; default the last stage");
+    step_app->add_option("-o,--output", step.csv, "table as CSV");
+    step_app->add_flag("--force", step.force, "replace an existing file instead of choosing a numbered name");
+    step_app->add_option("--set", step.overrides, "PATH=VALUE: change any key of the scenarios")->allow_extra_args(false);
+    step_app->callback([&] { command = [&] { return bench_step_command(step); }; });
+}
+
 int program(int argc, char** argv) {
     CLI::App app{"2D discrete-element simulator for jointed rock and masonry", "talus"};
     app.set_version_flag("--version", std::string("talus ") + version);
@@ -79,6 +119,13 @@ int program(int argc, char** argv) {
     verify_app->add_option("--case", verify.filter, "only cases whose name contains this");
     add_overrides(*verify_app, verify.overrides);
     verify_app->callback([&] { command = [&] { return verify_command(verify); }; });
+
+    CLI::App* bench_app = app.add_subcommand("bench", "how long things take on this machine");
+    bench_app->require_subcommand(1);
+    BenchSearchArguments bench_search;
+    add_bench_search(*bench_app, bench_search, command);
+    BenchStepArguments bench_step;
+    add_bench_step(*bench_app, bench_step, command);
 
     try {
         app.parse(argc, argv);

@@ -7,6 +7,19 @@
 
 namespace talus::cli {
 
+StatusLine::StatusLine() : terminal_(isatty(STDERR_FILENO) != 0) {}
+
+void StatusLine::show(const std::string& text) {
+    if (!terminal_ || since_line_.seconds() < 0.2) return;
+    since_line_.lap();
+    std::fprintf(stderr, "\r\033[K%s", text.c_str());
+    std::fflush(stderr);
+}
+
+void StatusLine::clear() {
+    if (terminal_) std::fprintf(stderr, "\r\033[K");
+}
+
 Progress::Progress() : terminal_(isatty(STDERR_FILENO) != 0) {}
 
 void Progress::stage_begun(const Simulation& simulation) {

@@ -5,8 +5,21 @@
 #include "simulation/simulation.hpp"
 
 #include <cstdint>
+#include <string>
 
 namespace talus::cli {
+
+/// One line that is written over and over on a terminal; nothing elsewhere.
+class StatusLine {
+public:
+    StatusLine();
+    void show(const std::string& text);  // now and then: looks at the clock
+    void clear();
+
+private:
+    bool terminal_;
+    Stopwatch since_line_;
+};
 
 class Progress {
 public:

@@ -1,4 +1,5 @@
 #include "commands.hpp"
+#include "scenario_files.hpp"
 #include "summary.hpp"
 
 #include "core/errors.hpp"
@@ -11,15 +12,6 @@
 
 namespace talus::cli {
 namespace {
-
-std::vector<std::string> scenario_files(const std::string& path) {
-    if (!std::filesystem::is_directory(path)) return {path};
-    std::vector<std::string> files;
-    for (const auto& entry : std::filesystem::recursive_directory_iterator(path))
-        if (entry.path().extension() == ".yaml") files.push_back(entry.path().string());
-    std::sort(files.begin(), files.end());
-    return files;
-}
 
 struct Tally {
     int cases = 0, checks = 0, failed_cases = 0;

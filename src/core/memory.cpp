@@ -5,6 +5,8 @@
 
 #include <cstdlib>
 #include <fstream>
+#include <limits>
+#include <string>
 #ifdef __GLIBC__
 #include <malloc.h>
 #endif
@@ -20,6 +22,22 @@ MemoryUse memory_use() {
     if (std::ifstream("/proc/self/statm") >> pages >> resident)
         use.now = resident * static_cast<double>(sysconf(_SC_PAGESIZE));
     return use;
+}
+
+double available_memory() {
+    std::ifstream file("/proc/meminfo");
+    for (std::string line; std::getline(file, line);)
+        if (line.rfind("MemAvailable:", 0) == 0) return 1024.0 * std::strtod(line.c_str() + sizeof "MemAvailable:", nullptr);
+    return std::numeric_limits<double>::infinity();
+}
+
+double heap_in_use() {
+#ifdef __GLIBC__
+    const auto all = mallinfo2();
+    return static_cast<double>(all.uordblks) + static_cast<double>(all.hblkhd);
+#else
+    return 0.0;
+#endif
 }
 
 void release_unused_memory() {

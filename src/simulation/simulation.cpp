@@ -3,6 +3,7 @@
 #include "core/errors.hpp"
 #include "core/memory.hpp"
 #include "dynamics/motion.hpp"
+#include "model/part_boxes.hpp"
 
 #ifdef _OPENMP
 #include <omp.h>
@@ -193,28 +194,17 @@ bool Simulation::left_boxes() const {
 }
 
 void Simulation::refresh() {
-    const int np = model_.parts.size();
-    boxes_.resize(np);
-    for (PartId p = 0; p < np; ++p) {
-        const BlockId block = model_.parts.block[p];
-        Box box{1.0, 1.0, -1.0, -1.0};  // absent
-        if (!state_.removed[block]) {
-            const Vec2& at = state_.motion.position[block];
-            Vec2 low = placed_.corner[model_.parts.first_corner[p]].arm, high = low;
-            for (int k = model_.parts.first_corner[p] + 1; k < model_.parts.first_corner[p + 1]; ++k) {
-                low = low.cwiseMin(placed_.corner[k].arm);
-                high = high.cwiseMax(placed_.corner[k].arm);
-            }
-            box = Box{low.x() + at.x(), low.y() + at.y(), high.x() + at.x(), high.y() + at.y()}.grown(skin_);
-        }
-        boxes_[p] = box;
-    }
+    talus::part_boxes(model_, state_, placed_, boxes_);
+    for (Box& box : boxes_)
+        if (present(box)) box = box.grown(skin_);
     search_->find(boxes_, pairs_);
     refresh_contacts(model_, placed_, pairs_, skin_, state_, contact_index_);
     boxed_position_ = state_.motion.position;
     boxed_angle_ = state_.motion.angle;
     ++refreshes_;
 }
+
+void Simulation::part_boxes(std::vector<Box>& boxes) const { talus::part_boxes(model_, state_, placed_, boxes); }
 
 void Simulation::drop_scratch() {
     placed_ = {};

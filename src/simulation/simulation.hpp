@@ -68,6 +68,9 @@ public:
     std::int64_t refreshes() const { return refreshes_; }    // how often the list of pairs was made anew
     const std::array<double, part_names.size()>& seconds() const { return seconds_; }
 
+    /// [np] boxes of the convex parts as they are now, without skin; absent ones as in part_boxes.hpp.
+    void part_boxes(std::vector<Box>& boxes) const;
+
     /// Throws away everything that is not State; what follows is the same. For tests.
     void drop_scratch();
 
