@@ -1,10 +1,10 @@
 #include "commands.hpp"
 #include "progress.hpp"
 #include "scenario_files.hpp"
+#include "search_table.hpp"
 
 #include "core/errors.hpp"
 #include "output/output_path.hpp"
-#include "output/whole_file.hpp"
 #include "scenario/reader.hpp"
 #include "simulation/record_boxes.hpp"
 #include "simulation/search_bench.hpp"
@@ -13,18 +13,11 @@
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
-#include <sstream>
 
 namespace talus::cli {
 namespace {
 
 const char* const default_scenarios = "scenarios/benchmark";
-
-struct Measured {
-    std::string scene;
-    std::size_t boxes, steps;
-    std::vector<SearchCost> costs;
-};
 
 std::string stem(const std::string& path) { return std::filesystem::path(path).stem().string(); }
 
@@ -39,59 +32,6 @@ SearchBench bench_of(const BenchSearchArguments& arguments) {
     bench.check = arguments.no_check ? Check::none : arguments.check_direct ? Check::direct : Check::affordable;
     check_bench(bench);
     return bench;
-}
-
-/// Without those that would take hours, unless they were asked for.
-SearchBench for_size(SearchBench bench, std::size_t boxes, bool asked_for) {
-    if (asked_for) return bench;
-    std::string left_out;
-    std::erase_if(bench.methods, [&](const std::string& method) {
-        if (boxes <= largest_by_default(method)) return false;
-        left_out += (left_out.empty() ? "" : ", ") + method;
-        return true;
-    });
-    if (!left_out.empty())
-        std::printf("  left out, too slow for %zu boxes: %s (name them in --methods to have them)\n", boxes,
-                    left_out.c_str());
-    return bench;
-}
-
-void print(const SearchCost& c) {
-    const std::string wrong = c.wrong_steps ? std::to_string(*c.wrong_steps) : "-";
-    std::printf("  %-16s %3d %7.4g %9.3g %9.3g %9.3g %9.3g %9.3g %9.3g %9.3g %8.3g %7.3g %7.0f %6s%s%s\n", c.method.c_str(),
-                c.threads, c.skin, c.median, c.q1, c.q3, c.mean, c.max, c.first, c.list, c.exchanges, c.pairs, c.bytes,
-                wrong.c_str(), c.choice.empty() ? "" : "  ", c.choice.c_str());
-}
-
-Measured measure(const std::string& scene, const Trajectory& trajectory, const SearchBench& bench, bool asked_for) {
-    std::printf("%s: %zu boxes, %zu steps\n", scene.c_str(), trajectory.boxes, trajectory.steps());
-    const SearchBench fitting = for_size(bench, trajectory.boxes, asked_for);
-    StatusLine line;
-    Measured measured{scene, trajectory.boxes, trajectory.steps(),
-                      time_searches(trajectory, fitting, [&](const std::string& now) { line.show(scene + ": " + now); })};
-    line.clear();
-    std::printf("  ns per box and step\n  %-16s %3s %7s %9s %9s %9s %9s %9s %9s %9s %8s %7s %7s %6s\n", "method", "thr",
-                "skin", "median", "q1", "q3", "mean", "max", "first", "list", "exch", "pairs", "bytes", "wrong");
-    for (const SearchCost& cost : measured.costs) print(cost);
-    std::fflush(stdout);
-    return measured;
-}
-
-void write_csv(const std::string& path, const std::vector<Measured>& all) {
-    write_whole_file(path, [&](std::ostream& file) {
-        file
-            << "scene,boxes,steps,method,threads,skin,ns_per_box_median,ns_per_box_q1,ns_per_box_q3,ns_per_box_mean,"
-               "ns_per_box_max,first_ns_per_box,list_ns_per_box,exchanges_per_box,pairs_per_box,bytes_per_box,wrong_steps\n";
-        for (const Measured& m : all)
-            for (const SearchCost& c : m.costs) {
-                file << m.scene << ',' << m.boxes << ',' << m.steps << ',' << c.method << ',' << c.threads << ',' << c.skin;
-                for (const double x : {c.median, c.q1, c.q3, c.mean, c.max, c.first, c.list, c.exchanges, c.pairs, c.bytes})
-                    file << ',' << x;
-                file << ',';
-                if (c.wrong_steps) file << *c.wrong_steps;
-                file << '\n';
-            }
-    });
 }
 
 Trajectory record(const Scenario& scenario, const std::string& scene, const BenchSearchArguments& arguments) {
@@ -118,9 +58,12 @@ int bench_search_command(const BenchSearchArguments& arguments) {
     };
     const std::string record_to = output(arguments.record), csv = output(arguments.csv);
 
-    std::vector<Measured> all;
+    std::vector<SearchTable> all;
     const auto take = [&](const std::string& scene, const Trajectory& trajectory) {
-        if (!bench.methods.empty()) all.push_back(measure(scene, trajectory, bench, !arguments.methods.empty()));
+        if (!bench.methods.empty())
+            all.push_back(time_and_print(
+                scene, trajectory,
+                arguments.methods.empty() ? within_reach(bench, trajectory.boxes, largest_by_default) : bench));
     };
     for (std::size_t i = 0; i < scenarios.size(); ++i) {
         const Trajectory trajectory = record(scenarios[i], stem(files[i]), arguments);
@@ -132,7 +75,7 @@ int bench_search_command(const BenchSearchArguments& arguments) {
     }
     for (const std::string& path : arguments.trajectories) take(stem(path), read_trajectory(path));
     if (csv.empty()) return ok;
-    write_csv(csv, all);
+    write_search_tables(csv, all);
     std::printf("%s\n", csv.c_str());
     return ok;
 }

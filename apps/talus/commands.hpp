@@ -1,6 +1,8 @@
 // The subcommands of `talus`. Each returns an exit code; what the user or the disk did wrong is thrown.
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -50,6 +52,13 @@ struct BenchStepArguments {
     bool force = false;
 };
 int bench_step_command(const BenchStepArguments& arguments);
+
+struct QueryArguments {
+    std::string results;
+    std::vector<std::string> at, in, along;  // "x,y", "x0,y0,x1,y1"
+    std::optional<std::int64_t> frame;       // the last one if none is named
+};
+int query_command(const QueryArguments& arguments);
 
 int info_command(const std::string& results);
 int export_command(const std::string& results, const std::string& folder);

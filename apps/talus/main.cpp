@@ -107,6 +107,18 @@ int program(int argc, char** argv) {
     info_app->add_option("results", results)->required();
     info_app->callback([&] { command = [&] { return info_command(results); }; });
 
+    QueryArguments query;
+    CLI::App* query_app = app.add_subcommand("query", "which blocks of a result are at a place");
+    query_app->add_option("results", query.results)->required();
+    const auto question = [&](const char* option, std::vector<std::string>& places, const char* help) {
+        query_app->add_option(option, places, help)->allow_extra_args(false);
+    };
+    question("--at", query.at, "X,Y: blocks that hold this point");
+    question("--in", query.in, "X0,Y0,X1,Y1: blocks that meet this rectangle");
+    question("--along", query.along, "X0,Y0,X1,Y1: blocks that this line enters, in their order");
+    query_app->add_option("--frame", query.frame, "from 0; default: the last one");
+    query_app->callback([&] { command = [&] { return query_command(query); }; });
+
     CLI::App* export_app = app.add_subcommand("export", "histories and energies as CSV");
     export_app->add_option("results", results)->required();
     export_app->add_option("-o,--output", folder, "folder");

@@ -485,6 +485,18 @@ void File::read_raw(const std::string& path, Type type, void* values) const {
     if (set.bad() || H5Dread(set, in_memory(type), H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0) fail_reading(path);
 }
 
+void File::read_rows_raw(const std::string& path, Type type, std::int64_t first, std::int64_t count, void* values) const {
+    const Handle set(H5Dopen2(id_, path.c_str(), H5P_DEFAULT), H5Dclose);
+    if (set.bad()) fail_reading(path);
+    std::vector<hsize_t> wanted = extents(shape(path)), start(wanted.size(), 0);
+    start[0] = static_cast<hsize_t>(first), wanted[0] = static_cast<hsize_t>(count);
+    const Handle whole(H5Dget_space(set), H5Sclose);
+    const Handle piece(H5Screate_simple(static_cast<int>(wanted.size()), wanted.data(), nullptr), H5Sclose);
+    if (H5Sselect_hyperslab(whole, H5S_SELECT_SET, start.data(), nullptr, wanted.data(), nullptr) < 0 ||
+        H5Dread(set, in_memory(type), piece, whole, H5P_DEFAULT, values) < 0)
+        fail_reading(path);
+}
+
 std::string File::type_name(const std::string& path) const {
     const Handle set(H5Dopen2(id_, path.c_str(), H5P_DEFAULT), H5Dclose);
     const Handle type(H5Dget_type(set), H5Tclose);

@@ -93,6 +93,13 @@ public:
         read_raw(path, type_of<T>(), values.data());
         return values;
     }
+    /// Rows [first, first + count).
+    template <class T>
+    std::vector<T> read_rows(const std::string& path, std::int64_t first, std::int64_t count) const {
+        std::vector<T> values(static_cast<std::size_t>(rows(path) == 0 ? 0 : size(path) / rows(path) * count));
+        read_rows_raw(path, type_of<T>(), first, count, values.data());
+        return values;
+    }
     std::string type_name(const std::string& path) const;  // f32, f64, i32, i64, u8, text
     std::string read_text(const std::string& path) const;
     std::vector<std::string> read_texts(const std::string& path) const;
@@ -120,6 +127,7 @@ private:
     void append_raw(const std::string& path, Type type, const void* values, std::int64_t count);
     void set_raw(const std::string& path, const std::string& name, Type type, const void* values, std::int64_t count);
     void read_raw(const std::string& path, Type type, void* values) const;
+    void read_rows_raw(const std::string& path, Type type, std::int64_t first, std::int64_t count, void* values) const;
     std::int64_t size(const std::string& path) const;
     [[noreturn]] void fail_writing(const std::string& what);
     [[noreturn]] void fail_reading(const std::string& what) const;

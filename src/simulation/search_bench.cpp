@@ -4,7 +4,6 @@
 #include "core/memory.hpp"
 #include "core/stopwatch.hpp"
 #include "core/text.hpp"
-#include "simulation/search_replay.hpp"
 #include "simulation/threads.hpp"
 
 #include <algorithm>
@@ -38,14 +37,14 @@ std::vector<Pair> reference(std::span<const Box> boxes, Check check, bool first)
 /// but the time of the updates.
 class SideBySide {
 public:
-    SideBySide(const Trajectory& trajectory, Check check) : trajectory_(trajectory), check_(check) {}
+    SideBySide(const Trajectory& trajectory, const SearchBench& bench) : trajectory_(trajectory), bench_(bench) {}
 
     void add(SearchCost& cost) {
         const double before = heap_in_use();
-        SearchReplay replay(cost.method, cost.threads, cost.skin, trajectory_.boxes);
+        SearchReplay replay(bench_.make, cost.method, cost.threads, cost.skin, trajectory_.boxes);
         cost.bytes = heap_in_use() - before;
         if (cost.skin > 0.0) cost.bytes -= static_cast<double>(sizeof(Box) * trajectory_.boxes);  // ours
-        lanes_.emplace_back(cost, std::move(replay)).judged = check_ != Check::none && cost.method != "read";
+        lanes_.emplace_back(cost, std::move(replay)).judged = bench_.check != Check::none && cost.method != "read";
     }
 
     void step(std::size_t f) {
@@ -57,7 +56,7 @@ public:
             lane.list.push_back(clock.seconds());
             lane.found = found_.size();
             if (!lane.judged) continue;
-            if (!known) expected_ = reference(lane.replay.handed(), check_, f == 0);
+            if (!known) expected_ = reference(lane.replay.handed(), bench_.check, f == 0);
             known = true;
             lane.right = found_ == expected_;
         }
@@ -105,14 +104,14 @@ private:
     }
 
     const Trajectory& trajectory_;
-    Check check_;
+    const SearchBench& bench_;
     std::vector<Lane> lanes_;
     std::vector<Pair> found_, expected_;
 };
 
 void check_all(const Trajectory& trajectory, const SearchBench& bench, std::vector<SearchCost>& costs, const Say& say) {
     for (const double skin : bench.skins) {
-        SideBySide together(trajectory, bench.check);
+        SideBySide together(trajectory, bench);
         for (SearchCost& cost : costs)
             if (cost.skin == skin) together.add(cost);
         for (std::size_t f = 0; f < trajectory.steps(); ++f) {
@@ -126,8 +125,8 @@ void check_all(const Trajectory& trajectory, const SearchBench& bench, std::vect
 
 /// Keeps the fastest time of each step, s. The boxes of a step are put into place before the clock starts: in a run they
 /// have just been computed.
-void time_once(const Trajectory& trajectory, const SearchCost& cost, std::vector<double>& fastest) {
-    SearchReplay replay(cost.method, cost.threads, cost.skin, trajectory.boxes);
+void time_once(const Trajectory& trajectory, const MakeSearch& make, const SearchCost& cost, std::vector<double>& fastest) {
+    SearchReplay replay(make, cost.method, cost.threads, cost.skin, trajectory.boxes);
     std::vector<Box> boxes(trajectory.boxes);
     for (std::size_t f = 0; f < trajectory.steps(); ++f) {
         const std::span<const Box> now = trajectory.step(f);
@@ -165,7 +164,7 @@ std::size_t largest_by_default(const std::string& method) {
 }
 
 void check_bench(const SearchBench& bench) {
-    for (const std::string& method : bench.methods) make_search_or_bound(method);
+    for (const std::string& method : bench.methods) bench.make(method);
     for (const int threads : bench.threads) check_threads(threads);
     for (const double skin : bench.skins)
         if (!(skin >= 0.0 && std::isfinite(skin))) throw InputError("skin: " + number(skin) + " m is not 0 or more");
@@ -189,7 +188,7 @@ std::vector<SearchCost> time_searches(const Trajectory& trajectory, const Search
     for (int r = 0; r < bench.repeat; ++r)
         for (std::size_t i = 0; i < costs.size(); ++i) {
             say("repetition " + std::to_string(r + 1) + " of " + std::to_string(bench.repeat) + ": " + name_of(costs[i]));
-            time_once(trajectory, costs[i], fastest[i]);
+            time_once(trajectory, bench.make, costs[i], fastest[i]);
         }
     for (std::size_t i = 0; i < costs.size(); ++i) summarise(fastest[i], trajectory.boxes, costs[i]);
     return costs;

@@ -3,6 +3,7 @@
 
 #include "output/trajectory.hpp"
 #include "simulation/advance.hpp"
+#include "simulation/search_replay.hpp"
 
 #include <optional>
 #include <string>
@@ -18,11 +19,12 @@ enum class Check {
 };
 
 struct SearchBench {
-    std::vector<std::string> methods;  // names of make_search, and `read`: nothing but reading the boxes, the bound of all
+    std::vector<std::string> methods;  // names of `make`: of searches, and `read`: nothing but reading the boxes
     std::vector<int> threads{1};
     std::vector<double> skins{0.0};  // m; > 0: boxes grown by it are searched whenever some box has left its own
     int repeat = 5;                  // of each step the fastest counts
     Check check = Check::affordable;
+    MakeSearch make = make_search_or_bound;  // other libraries can stand behind it, to be timed beside ours
 };
 
 /// One method with one number of threads and one skin. Times are ns per box and step; the first step, which builds, is

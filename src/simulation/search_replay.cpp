@@ -36,10 +36,10 @@ std::unique_ptr<PairSearch> make_search_or_bound(const std::string& method) {
     return make_search(method);
 }
 
-SearchReplay::SearchReplay(const std::string& method, int threads, double skin, std::size_t boxes)
+SearchReplay::SearchReplay(const MakeSearch& make, const std::string& method, int threads, double skin, std::size_t boxes)
     : threads_(threads), skin_(skin), grown_(skin > 0.0 ? boxes : 0) {
     use_my_threads();
-    search_ = make_search_or_bound(method);
+    search_ = make(method);
 }
 
 void SearchReplay::use_my_threads() const { use_threads(threads_); }

@@ -157,6 +157,17 @@ class BadInput(Program):
                 path.write_bytes(good)
         self.talus("info", "slope.h5")
 
+    def test_a_place_that_is_none(self):
+        self.write("slope.yaml", INCLINE)
+        self.talus("run", "slope.yaml")
+        self.refused("query", "slope.h5", report="--at, --in or --along")
+        for place in ("7", "7,x", "7,4,", "7 4", "7,4,5", "nan,4", "1e999,4", ""):
+            self.refused("query", "slope.h5", "--at", place, report=rf"--at: needs 2 numbers .*not `{re.escape(place)}`")
+        self.refused("query", "slope.h5", "--in", "1,2,3", report="--in: needs 4 numbers")
+        self.refused("query", "slope.h5", "--along", "1,2", report="--along: needs 4 numbers")
+        self.refused("query", "slope.h5", "--at", "7,4", "--frame", "99", report=r"slope\.h5: there is no frame 99, the last one is \d+")
+        self.refused("query", "slope.h5", "--at", "7,4", "--frame", "-1", report=r"slope\.h5: there is no frame -1")
+
     def test_a_file_that_is_cut_off_or_none_of_ours(self):
         self.write("slope.yaml", INCLINE)
         self.talus("run", "slope.yaml")
@@ -169,6 +180,7 @@ class BadInput(Program):
                         self.refused(command, "slope.h5", report=re.escape(name))
             (self.folder / name).write_bytes(good[name])
         self.refused("info", "slope.yaml", report="slope.yaml")
+        self.refused("query", "slope.yaml", "--at", "1,1", report="slope.yaml")
         self.refused("resume", "other.h5", report=r"other\.")
         (self.folder / "slope.restart.h5").unlink()
         self.refused("resume", "slope.h5", report=r"^slope\.restart\.h5: is not there; .*run the scenario again")

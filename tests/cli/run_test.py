@@ -37,6 +37,26 @@ expect: [{quantity: displacement, block: cube, component: y, value: -5, toleranc
         self.assertNotEqual((self.folder / "slope.h5").read_bytes(), first)
         self.assertFalse((self.folder / "slope-3.h5").exists())
 
+    def test_blocks_of_a_result_are_found_by_place(self):
+        self.write("map.yaml", """\
+gravity: [0, 0]
+materials: {rock: {density: 2500}}
+joints: {joint: {normal_stiffness: 1e9, shear_stiffness: 5e8, friction_angle_deg: 30}}
+contacts: {default: joint}
+blocks:
+  - {name: west, rectangle: {corner: [500000, 6000000], size: [2, 1]}}
+  - {name: east, rectangle: {corner: [500002, 6000000], size: [2, 1]}}
+run: {until: {time: 0.01}}
+""")
+        self.talus("run", "map.yaml")
+        west, east = "block 0 'west' at (500001.00, 6000000.50)\n", "block 1 'east' at (500003.00, 6000000.50)\n"
+        self.assertEqual(self.talus("query", "map.h5", "--at", "500001,6000000.2")[0], west)
+        self.assertEqual(self.talus("query", "map.h5", "--at", "500002,6000000.2", "--frame", "0")[0], west + east)
+        self.assertEqual(self.talus("query", "map.h5", "--at", "500001,6000007")[0], "")
+        self.assertEqual(self.talus("query", "map.h5", "--in", "500009,6000009,500003,6000000")[0], east)
+        out, _ = self.talus("query", "map.h5", "--along", "500005,6000000.5,500001.5,6000000.5")
+        self.assertRegex(out, r"^block 1 .*, inside from 1 m to 3 m\nblock 0 .*, inside from 3 m to 3\.5 m\n$")
+
     def test_check_replaces_no_file_either(self):
         self.write("slope.yaml", INCLINE)
         self.talus("run", "slope.yaml")
