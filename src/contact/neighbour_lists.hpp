@@ -10,17 +10,22 @@
 
 namespace talus {
 
-/// A neighbour: its number and what is known of the pair, the same on both sides.
+/// How a pair is watched, that is, compared at every step.
+enum class Watch : std::uint32_t { not_at_all, one_bound, all_bounds };
+
+/// A neighbour: its number and what is known of the pair.
 class Neighbour {
 public:
+    static constexpr int most = 1 << 29;  // boxes
+
     Neighbour() = default;
-    Neighbour(int box, bool overlaps, bool watched)
+    Neighbour(int box, bool overlaps, Watch watch)
         : bits_(static_cast<std::uint32_t>(box) | static_cast<std::uint32_t>(overlaps) << 31 |
-                static_cast<std::uint32_t>(watched) << 30) {}
-    int box() const { return static_cast<int>(bits_ & ((1u << 30) - 1)); }
+                static_cast<std::uint32_t>(watch) << 29) {}
+    int box() const { return static_cast<int>(bits_ & (most - 1)); }
     bool overlaps() const { return bits_ >> 31; }
     void set_overlaps(bool on) { bits_ = (bits_ & ~(1u << 31)) | static_cast<std::uint32_t>(on) << 31; }
-    bool watched() const { return (bits_ >> 30) & 1; }
+    Watch watch() const { return static_cast<Watch>((bits_ >> 29) & 3); }
 
 private:
     std::uint32_t bits_ = 0;
@@ -66,13 +71,13 @@ public:
         }
     }
 
-    /// Sets what box i knows of j; with `watch`, it is i who watches the pair.
-    void set(int i, int j, bool overlaps, bool watched, bool watch) {
+    /// Sets what box i knows of j; `first`: it is i who compares all bounds of the pair.
+    void set(int i, int j, bool overlaps, Watch watch, bool first) {
         Neighbour* found = find(i, j);
         if (!found) return;
         found = unwatched(i, found);
-        *found = Neighbour(j, overlaps, watched);
-        if (!watch) return;
+        *found = Neighbour(j, overlaps, watch);
+        if (!first) return;
         Place& place = places_[i];
         std::swap(*found, pool_[place.first + place.watched++]);
         watching_[i / 64] |= std::uint64_t{1} << (i % 64);

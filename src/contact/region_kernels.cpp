@@ -83,7 +83,7 @@ constexpr Kernels plain{find_escaped_plain, compare_plain};
                                                                       NeighbourLists& lists) {
     static_assert(sizeof(Neighbour) == 4 && sizeof(Box) == 32);
     const __m512d sign = _mm512_setr_pd(0.0, 0.0, -0.0, -0.0, 0.0, 0.0, -0.0, -0.0);
-    const __m128i number = _mm_set1_epi32((1 << 30) - 1), without_flag = _mm_set1_epi32(0x7fffffff);
+    const __m128i number = _mm_set1_epi32(Neighbour::most - 1), without_flag = _mm_set1_epi32(0x7fffffff);
     const __m128i flag = _mm_set1_epi32(static_cast<int>(0x80000000u));
     for (std::uint64_t left = lists.watching()[word]; left != 0; left &= left - 1) {
         const int i = 64 * word + std::countr_zero(left);
@@ -129,6 +129,15 @@ void find_escaped(std::span<const Box> boxes, const Vec2& centre, const Regions&
 
 void compare_watched(std::span<const Box> boxes, int word, NeighbourLists& lists) {
     best.compare_watched(boxes, word, lists);
+}
+
+void compare_upper_bounds(std::span<const Box> boxes, int word, UpperBounds& bounds) {
+    if (bounds.watching[word] == 0) return;
+    const int end = std::min(64 * word + 64, static_cast<int>(boxes.size()));
+    for (int i = 64 * word; i < end; ++i) {
+        const UpperBounds::Beyond other = bounds.beyond[i];
+        bounds.reaches[i] = {boxes[i].xmax >= boxes[other.x].xmin, boxes[i].ymax >= boxes[other.y].ymin};
+    }
 }
 
 }  // namespace talus

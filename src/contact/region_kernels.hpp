@@ -23,4 +23,21 @@ void find_escaped(std::span<const Box> boxes, const Vec2& centre, const Regions&
 /// Compares boxes 64 x word to 64 x word + 63 with those that they watch, and notes which overlap.
 void compare_watched(std::span<const Box> boxes, int word, NeighbourLists& lists);
 
+/// Pairs that hang on one inequality: the upper bound of one box against the lower bound of another. A box watches one other
+/// beyond each of its two upper bounds.
+struct UpperBounds {
+    struct Beyond {
+        int x, y;  // the other box; the box itself: none
+    };
+    struct Reaches {
+        bool x, y;  // whether the upper bound is not below the lower one of the other
+    };
+    std::vector<Beyond> beyond;           // [n]
+    std::vector<Reaches> reaches;         // [n]
+    std::vector<std::uint64_t> watching;  // a bit for every box that watches another, 64 boxes a word; or did
+};
+
+/// Compares boxes 64 x word to 64 x word + 63 with those beyond their upper bounds.
+void compare_upper_bounds(std::span<const Box> boxes, int word, UpperBounds& bounds);
+
 }  // namespace talus

@@ -8,14 +8,18 @@
 // new region.
 //
 // Pairs that would force many looks, because the two boxes move fast for the little that is left between them, are watched
-// instead: compared at every step, as with a Verlet list, and left out of the radius. So a scene at rest costs one test per
-// box, a scene that mixes becomes a Verlet list of itself, and a slide in a slope is a bit of both.
+// instead: compared at every step, as with a Verlet list, and left out of the radius. In cut rock most of them hang on one
+// inequality, where the corner of a block is the lowest of one and the highest of the other: then only that is compared. So
+// a scene at rest costs one test per box, a scene that mixes becomes a Verlet list of itself, and a slide in a slope is a
+// bit of both. What all boxes do in common, such as falling, is taken out: they are seen from a centre that moves with most
+// of them.
 #include "contact/cell_grid.hpp"
 #include "contact/neighbour_lists.hpp"
 #include "contact/region_kernels.hpp"
 #include "contact/search_methods.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdio>
@@ -36,10 +40,19 @@ int thread_count() {
 #endif
 }
 
-// The smallest of the four differences that are all >= 0 for closed boxes that overlap.
-double overlap(const Box& a, const Box& b) {
-    return std::min(std::min(b.xmax - a.xmin, a.xmax - b.xmin), std::min(b.ymax - a.ymin, a.ymax - b.ymin));
-}
+// The four differences that are all >= 0 for closed boxes that overlap.
+struct Differences {
+    std::array<double, 4> of;  // upper bound of b - lower bound of a, and the other way round, along x; the same along y
+
+    Differences(const Box& a, const Box& b) : of{b.xmax - a.xmin, a.xmax - b.xmin, b.ymax - a.ymin, a.ymax - b.ymin} {}
+    int smallest() const { return static_cast<int>(std::min_element(of.begin(), of.end()) - of.begin()); }
+    double rest(int without) const {
+        double least = std::numeric_limits<double>::infinity();
+        for (int k = 0; k < 4; ++k)
+            if (k != without) least = std::min(least, of[k]);
+        return least;
+    }
+};
 
 double farthest(const Box& a, const Box& b) {
     return std::max(std::max(std::abs(a.xmin - b.xmin), std::abs(a.xmax - b.xmax)),
@@ -63,13 +76,14 @@ public:
             track_.clear();
             rebuild();
         } else {
+            follow();
             find_escaped();
-            if (most_are_gone())
+            if (rounding() > guard_ || most_are_gone())
                 rebuild();
             else
                 for (const int i : escaped_) look_at(i);
-            compare_watched();
         }
+        compare();
         boxes_ = {};
     }
 
@@ -79,13 +93,11 @@ public:
         for (int i = 0; i < n_; ++i) {
             const std::size_t first = pairs.size();
             for (const Neighbour n : lists_.of(i)) {
-                if (!n.overlaps()) continue;
-                if (n.box() > i) {
-                    if (keeper(i, n.box()) == i) pairs.push_back({i, n.box()});
-                } else if (keeper(n.box(), i) == i) {
-                    pairs.push_back({n.box(), i});
-                    sorted = false;
-                }
+                const Pair pair{std::min(i, n.box()), std::max(i, n.box())};
+                if (keeper(pair.a, pair.b) != i) continue;
+                if (!(n.watch() == Watch::one_bound ? reaches(i, n.box()) : n.overlaps())) continue;
+                pairs.push_back(pair);
+                sorted = sorted && pair.a == i;
             }
             std::sort(pairs.begin() + static_cast<std::ptrdiff_t>(first), pairs.end());
         }
@@ -95,7 +107,8 @@ public:
     std::string choice() const override {
         if (step_ == 0) return {};
         std::size_t watched = 0;
-        for (int i = 0; i < n_; ++i) watched += lists_.watched_by(i).size();
+        for (int i = 0; i < n_; ++i)
+            watched += lists_.watched_by(i).size() + (upper_.beyond[i].x != i) + (upper_.beyond[i].y != i);
         char text[120];
         std::snprintf(text, sizeof text,
                       "safe regions, %.2g %% of the boxes looked at in a step, %.2g pairs per box watched",
@@ -115,6 +128,7 @@ private:
     static constexpr int rest = 64;                // steps between questions whether a pair may be left alone again
     static constexpr double margin_growth = 12.0;  // margin = sqrt(this x speed x size)
     static constexpr double unknown_speed = 2e-5;  // of a block per step, until the first look
+    static constexpr int sample_size = 31;         // boxes that tell of common motion
     static constexpr int many = 512;  // neighbours that make a hub: to find one of so many takes half a microsecond
 
     // ---- where boxes are, seen from the centre ----------------------------------------------------------------------
@@ -177,6 +191,46 @@ private:
 
     // ---- stages of a step ------------------------------------------------------------------------------------------
 
+    // Lets the centre go along with what most of the boxes did since the last step. A sample tells; where its members go
+    // many ways, the centre stays. Where hardly a box escapes there is nothing to gain, and nobody is asked.
+    void follow() {
+        if (std::ssize(escaped_) > n_ / 64) {
+            if (following_ == 0) sample_.fill(Vec2::Constant(std::numeric_limits<double>::quiet_NaN()));
+            following_ = rest;
+        }
+        if (following_ == 0) return;
+        --following_;
+        const int every = std::max(1, n_ / sample_size);
+        std::array<std::array<double, sample_size>, 2> moved;
+        int count = 0;
+        for (int k = 0; k < sample_size && k * every < n_; ++k) {
+            const Box& b = boxes_[k * every];
+            const Vec2 now(0.5 * b.xmin + 0.5 * b.xmax, 0.5 * b.ymin + 0.5 * b.ymax);
+            const Vec2 step = now - sample_[k];
+            sample_[k] = now;
+            if (!std::isfinite(step.x() + step.y())) continue;
+            moved[0][count] = step.x();
+            moved[1][count++] = step.y();
+        }
+        if (count == 0) return;
+        Vec2 common;
+        for (int axis = 0; axis < 2; ++axis) {
+            const std::span all(moved[axis].data(), count);
+            const double middle = median(all);
+            for (double& each : all) each = std::abs(each - middle);
+            common[axis] = std::abs(middle) > 4.0 * median(all) ? middle : 0.0;
+        }
+        if (common.isZero() || common.cwiseAbs().maxCoeff() > typical_) return;
+        centre_ += common;
+        following_ = rest;
+    }
+
+    static double median(std::span<double> values) {
+        const auto middle = values.begin() + std::ssize(values) / 2;
+        std::nth_element(values.begin(), middle, values.end());
+        return *middle;
+    }
+
     void find_escaped() {
         escaped_.clear();
         const int threads = n_ < 20000 ? 1 : thread_count();
@@ -214,73 +268,139 @@ private:
         set_region(i, reconsider);
     }
 
-    // Radius of i as far as all pairs allow that are not watched, for its reference of now.
+    // Radius of i as far as all pairs allow, for its reference of now.
     void set_region(int i, bool reconsider) {
         const Box mine = reference(i);
         double radius = slack(grid_.box(i), mine) - guard_;
-        for_each_neighbour(i, [&](int j, bool was, bool watched) {
-            if (watched && !reconsider) return;
-            const bool overlaps = boxes_[i].overlaps(boxes_[j]);
-            const double room = std::abs(overlap(boxes_[i], boxes_[j]));
-            if (watched ? calm(i, j, room) : overlaps != was) {
-                set(i, j, overlaps, false);
-                watched = false;
-            }
-            if (!watched) radius = std::min(radius, share(i, mine, j, overlaps, room));
+        for_each_neighbour(i, [&](const Neighbour n) {
+            if (n.watch() == Watch::all_bounds && !reconsider) return;
+            radius = std::min(radius, settle(i, mine, n));
         });
         regions_.radius[i] = ordinary(mine) ? rounded_down(radius) : -1.0F;
+    }
+
+    // Decides how the pair with a neighbour is treated; what that leaves i for its radius, m.
+    double settle(int i, const Box& mine, const Neighbour n) {
+        const int j = n.box();
+        const bool overlaps = boxes_[i].overlaps(boxes_[j]);
+        const Differences now(boxes_[i], boxes_[j]);
+        const int least = now.smallest();
+        const double needed = patience * closing(i, j);
+        if (ordinary(mine) && ordinary(reference(j))) {
+            // Twice the distance at which watching begins: a pair between the two would change sides at every look.
+            const double calm = n.watch() == Watch::not_at_all ? needed : 2.0 * needed + guard_;
+            if (std::abs(now.of[least]) > calm) {
+                const double radius = share(mine, j, -1, overlaps, std::abs(now.of[least]));
+                if (radius >= 0.0) {
+                    if (n.watch() != Watch::not_at_all || n.overlaps() != overlaps) set(i, j, overlaps, Watch::not_at_all);
+                    return radius;
+                }
+            }
+            const int bound = n.watch() == Watch::one_bound ? watched_bound(i, j) : least;
+            if (now.rest(bound) > needed && (n.watch() == Watch::one_bound || free(i, j, bound))) {
+                const double radius = share(mine, j, bound, true, now.rest(bound));
+                if (radius >= 0.0) {
+                    if (n.watch() != Watch::one_bound) watch_bound(i, j, bound, overlaps);
+                    return radius;
+                }
+            }
+        }
+        if (n.watch() != Watch::all_bounds) set(i, j, overlaps, Watch::all_bounds);
+        return std::numeric_limits<double>::infinity();
     }
 
     /// m: how far two boxes move in a step, together.
     double closing(int i, int j) const { return speed(i, seen(i)) + speed(j, seen(j)); }
 
-    /// Whether a pair need not be watched any more. Twice the distance at which watching begins: a pair between the two
-    /// would change sides at every look.
-    bool calm(int i, int j, double room) const {
-        return room > 2.0 * patience * closing(i, j) + guard_ && ordinary(reference(i)) && ordinary(reference(j));
-    }
-
-    // What the pair with j leaves i for its radius; infinite if the pair is better watched.
-    double share(int i, const Box& mine, int j, bool overlaps, double room) {
+    // What the pair with j leaves i for its radius, if its differences but `without` are to keep the sign they have;
+    // negative if they can change at once. `room`: by how much they have it now.
+    double share(const Box& mine, int j, int without, bool positive, double room) {
         Box other = reference(j);
-        if (!(room > patience * closing(i, j) && ordinary(mine) && ordinary(other))) return watch(i, j, overlaps);
-        double certain = this->certain(mine, other, overlaps);
+        double certain = this->certain(mine, other, without, positive);
         const double taken = std::max(regions_.radius[j], 0.0F);
         if (certain - taken >= 0.5 * room) return certain - taken;
         // The region of j takes too much: it shrinks to a ball within itself, around where j is now.
         move_reference(j, seen(j));
         const double kept = regions_.radius[j] - farthest(reference(j), other) - guard_;
         other = reference(j);
-        certain = this->certain(mine, other, overlaps);
+        certain = this->certain(mine, other, without, positive);
         regions_.radius[j] = rounded_down(certain >= 0.0 ? std::min(kept, 0.5 * certain) : kept);
-        if (!(certain >= 0.0)) return watch(i, j, overlaps);
-        return certain - std::max(regions_.radius[j], 0.0F);
+        return certain >= 0.0 ? certain - std::max(regions_.radius[j], 0.0F) : certain;
     }
 
-    /// m: how much two boxes may change from their references before their pair can change; negative if it can at once.
-    double certain(const Box& a, const Box& b, bool overlaps) const {
-        const double o = overlap(a, b);
-        return (o >= 0.0) == overlaps ? std::abs(o) - guard_ : -1.0;
+    /// m: how much two boxes may change from their references before a sign can; negative if it can at once.
+    double certain(const Box& a, const Box& b, int without, bool positive) const {
+        const double least = Differences(a, b).rest(without);
+        return (least >= 0.0) == positive ? std::abs(least) - guard_ : -1.0;
     }
 
-    double watch(int i, int j, bool overlaps) {
-        set(i, j, overlaps, true);
-        return std::numeric_limits<double>::infinity();
+    // ---- pairs that are watched -----------------------------------------------------------------------------------------
+
+    // Bound k of i against j, as in Differences(i, j): even numbers are upper bounds of j, odd ones of i.
+    bool free(int i, int j, int k) const {
+        const int who = k % 2 == 0 ? j : i;
+        return (k < 2 ? upper_.beyond[who].x : upper_.beyond[who].y) == who;
     }
 
-    void compare_watched() {
-        const auto watching = lists_.watching();
-        const int words = static_cast<int>(watching.size());
+    int watched_bound(int i, int j) const {
+        const auto &mine = upper_.beyond[i], &other = upper_.beyond[j];
+        return other.x == i ? 0 : mine.x == j ? 1 : other.y == i ? 2 : 3;
+    }
+
+    bool reaches(int i, int j) const {
+        const int k = watched_bound(i, j);
+        const UpperBounds::Reaches here = upper_.reaches[k % 2 == 0 ? j : i];
+        return k < 2 ? here.x : here.y;
+    }
+
+    void watch_bound(int i, int j, int k, bool overlaps) {
+        set(i, j, overlaps, Watch::one_bound);
+        const int who = k % 2 == 0 ? j : i, other = k % 2 == 0 ? i : j;
+        (k < 2 ? upper_.beyond[who].x : upper_.beyond[who].y) = other;
+        (k < 2 ? upper_.reaches[who].x : upper_.reaches[who].y) = overlaps;
+        upper_.watching[who / 64] |= std::uint64_t{1} << (who % 64);
+    }
+
+    void forget_bound(int i, int j) {
+        auto &mine = upper_.beyond[i], &other = upper_.beyond[j];
+        if (mine.x == j) mine.x = i;
+        if (mine.y == j) mine.y = i;
+        if (other.x == i) other.x = j;
+        if (other.y == i) other.y = j;
+    }
+
+    void compare() {
+        const int words = static_cast<int>(upper_.watching.size());
         const int threads = n_ < 4000 ? 1 : thread_count();
 #pragma omp parallel for schedule(static) num_threads(threads)
-        for (int w = 0; w < words; ++w) talus::compare_watched(boxes_, w, lists_);
-        for (int w = step_ % rest; w < words; w += rest)
-            for (std::uint64_t left = watching[w]; left != 0; left &= left - 1) reconsider(64 * w + std::countr_zero(left));
+        for (int w = 0; w < words; ++w) {
+            compare_watched(boxes_, w, lists_);
+            compare_upper_bounds(boxes_, w, upper_);
+        }
+        for (int w = step_ % rest; w < words; w += rest) reconsider_word(w);
     }
 
-    void reconsider(int i) {
-        for (const Neighbour n : lists_.watched_by(i))
-            if (calm(i, n.box(), std::abs(overlap(boxes_[i], boxes_[n.box()])))) return look_at(i, true);
+    // Asks pairs that are watched whether they may be left alone again.
+    void reconsider_word(int w) {
+        for (std::uint64_t left = lists_.watching()[w]; left != 0; left &= left - 1) {
+            const int i = 64 * w + std::countr_zero(left);
+            for (const Neighbour n : lists_.watched_by(i))
+                if (calm(i, n.box())) {
+                    look_at(i, true);
+                    break;
+                }
+        }
+        for (std::uint64_t left = upper_.watching[w]; left != 0; left &= left - 1) {
+            const int i = 64 * w + std::countr_zero(left);
+            const UpperBounds::Beyond beyond = upper_.beyond[i];
+            if (beyond.x == i && beyond.y == i) upper_.watching[w] &= ~(std::uint64_t{1} << (i % 64));
+            if ((beyond.x != i && calm(i, beyond.x)) || (beyond.y != i && calm(i, beyond.y))) look_at(i);
+        }
+    }
+
+    bool calm(int i, int j) const {
+        const Differences now(boxes_[i], boxes_[j]);
+        return std::abs(now.of[now.smallest()]) > 2.0 * patience * closing(i, j) + guard_;
     }
 
     // ---- lists of neighbours -----------------------------------------------------------------------------------------
@@ -292,29 +412,31 @@ private:
     /// Of the two of a pair, the one that watches it and tells of it.
     int keeper(int a, int b) const { return hub_[a] && !hub_[b] ? b : a; }
 
-    void set(int i, int j, bool overlaps, bool watched) {
-        const int watcher = watched ? keeper(std::min(i, j), std::max(i, j)) : -1;
-        if (stores(i, j)) lists_.set(i, j, overlaps, watched, watcher == i);
-        if (stores(j, i)) lists_.set(j, i, overlaps, watched, watcher == j);
+    void set(int i, int j, bool overlaps, Watch watch) {
+        forget_bound(i, j);
+        const int first = watch == Watch::all_bounds ? keeper(std::min(i, j), std::max(i, j)) : -1;
+        if (stores(i, j)) lists_.set(i, j, overlaps, watch, first == i);
+        if (stores(j, i)) lists_.set(j, i, overlaps, watch, first == j);
     }
 
     template <class Visit>
     void for_each_neighbour(int i, Visit&& visit) {
         seen_.assign(lists_.of(i).begin(), lists_.of(i).end());  // what is set moves in the list
-        for (const Neighbour n : seen_) visit(n.box(), n.overlaps(), n.watched());
+        for (const Neighbour n : seen_) visit(n);
         if (!hub_[i]) return;
         for (int j = 0; j < n_; ++j)
             if (!hub_[j])
-                if (const Neighbour* n = lists_.find(j, i)) visit(j, n->overlaps(), n->watched());
+                if (const Neighbour* n = lists_.find(j, i)) visit(Neighbour(j, n->overlaps(), n->watch()));
     }
 
     void join(int i, int j) {
         const bool overlaps = boxes_[i].overlaps(boxes_[j]);
-        if (stores(i, j)) lists_.add(i, Neighbour(j, overlaps, false));
-        if (stores(j, i)) lists_.add(j, Neighbour(i, overlaps, false));
+        if (stores(i, j)) lists_.add(i, Neighbour(j, overlaps, Watch::not_at_all));
+        if (stores(j, i)) lists_.add(j, Neighbour(i, overlaps, Watch::not_at_all));
     }
 
     void part(int i, int j) {
+        forget_bound(i, j);
         if (stores(i, j)) lists_.remove(i, j);
         if (stores(j, i)) lists_.remove(j, i);
     }
@@ -323,7 +445,7 @@ private:
     void list(int i, const Box& b) {
         const CoarseBox outer = coarse(b, margin(i, b));
         old_.clear();
-        for_each_neighbour(i, [&](int j, bool, bool) { old_.push_back(j); });
+        for_each_neighbour(i, [&](const Neighbour n) { old_.push_back(n.box()); });
         grid_.overlapping(outer, old_, [&](int j) {
             if (j != i) join(i, j);
         });
@@ -335,7 +457,7 @@ private:
     void take_out(int i) {
         if (grid_.holds(i)) {
             old_.clear();
-            for_each_neighbour(i, [&](int j, bool, bool) { old_.push_back(j); });
+            for_each_neighbour(i, [&](const Neighbour n) { old_.push_back(n.box()); });
             for (const int j : old_) part(i, j);
             grid_.remove(i);
         }
@@ -356,6 +478,10 @@ private:
         grid_.reset(n_, 0.25 * far_, typical_);
         lists_.reset(n_);
         hub_.assign(n_, 0);
+        upper_.reaches.assign(n_, {true, true});
+        upper_.beyond.resize(n_);
+        for (int i = 0; i < n_; ++i) upper_.beyond[i] = {i, i};
+        upper_.watching.assign((n_ + 63) / 64, 0);
         for (int i = 0; i < n_; ++i) {
             if (!present(boxes_[i])) {
                 take_out(i);
@@ -368,7 +494,7 @@ private:
         for (int i = 0; i < n_; ++i) {
             if (!grid_.holds(i)) continue;
             grid_.overlapping(grid_.box(i), {}, [&](int j) {
-                if (j != i) lists_.add(i, Neighbour(j, boxes_[i].overlaps(boxes_[j]), false));
+                if (j != i) lists_.add(i, Neighbour(j, boxes_[i].overlaps(boxes_[j]), Watch::not_at_all));
             });
             hub_[i] = lists_.of(i).size() > many;
         }
@@ -383,17 +509,28 @@ private:
             if (grid_.holds(i)) first_region(i);
     }
 
-    // Every pair gives half of its room to each of the two.
+    // As set_region, but every pair gives half of its room to each of the two.
     void first_region(int i) {
         const Box mine = reference(i);
         double radius = slack(grid_.box(i), mine) - guard_;
-        for_each_neighbour(i, [&](int j, bool overlaps, bool watched) {
-            if (watched) return;
-            const double room = certain(mine, reference(j), overlaps);
-            if (room > patience * closing(i, j) && ordinary(mine) && ordinary(reference(j)))
-                radius = std::min(radius, 0.5 * room);
-            else
-                watch(i, j, overlaps);
+        for_each_neighbour(i, [&](const Neighbour n) {
+            const int j = n.box();
+            const bool usual = ordinary(mine) && ordinary(reference(j));
+            const Differences now(mine, reference(j));
+            const double needed = patience * closing(i, j) + guard_;
+            int bound = n.watch() == Watch::one_bound ? watched_bound(i, j) : now.smallest();
+            if (n.watch() == Watch::all_bounds) return;
+            if (n.watch() == Watch::not_at_all) {
+                const double room = certain(mine, reference(j), -1, n.overlaps());
+                if (usual && room > needed) {
+                    radius = std::min(radius, 0.5 * room);
+                    return;
+                }
+                if (!usual || !(now.rest(bound) > needed) || !free(i, j, bound))
+                    return set(i, j, n.overlaps(), Watch::all_bounds);
+                watch_bound(i, j, bound, n.overlaps());
+            }
+            radius = std::min(radius, 0.5 * certain(mine, reference(j), bound, true));
         });
         if (ordinary(mine)) regions_.radius[i] = rounded_down(radius);
     }
@@ -418,8 +555,11 @@ private:
                 std::max(std::max(std::abs(b.xmin), std::abs(b.xmax)), std::max(std::abs(b.ymin), std::abs(b.ymax))));
         }
         far_ = std::min(8.0 * (at_rank(far, 0.98) + typical_), 1e30);
-        guard_ = 0x1p-48 * (far_ + std::abs(centre_.x()) + std::abs(centre_.y()));
+        guard_ = 2.0 * rounding();
     }
+
+    /// m: more than all rounding of what is compared with a radius.
+    double rounding() const { return 0x1p-48 * (far_ + std::abs(centre_.x()) + std::abs(centre_.y())); }
 
     static double at_rank(std::vector<double>& values, double share) {
         if (values.empty()) return 0.0;
@@ -433,15 +573,18 @@ private:
 
     std::span<const Box> boxes_;  // during update() only
     int n_ = 0, step_ = 0;
-    Vec2 centre_ = Vec2::Zero();
-    double typical_ = 1.0;  // m, size of a box in the middle
-    double far_ = 1.0;      // m, beyond it boxes are looked at in every step
-    double guard_ = 0.0;    // m, more than all rounding of what is compared with a radius
+    Vec2 centre_ = Vec2::Zero();            // m; what is seen from it is rounded, but in the same way for all
+    int following_ = 0;                     // steps for which the centre may move
+    std::array<Vec2, sample_size> sample_;  // m, middles of some boxes in the last step
+    double typical_ = 1.0;                  // m, size of a box in the middle
+    double far_ = 1.0;                      // m, beyond it boxes are looked at in every step
+    double guard_ = 0.0;                    // m, see rounding(); twice of it, for the centre moves
 
     Regions regions_;
     std::vector<Track> track_;
     CellGrid grid_;  // coarse boxes
     NeighbourLists lists_;
+    UpperBounds upper_;
     std::vector<char> hub_;
 
     std::vector<int> escaped_;
