@@ -132,11 +132,16 @@ void compare_watched(std::span<const Box> boxes, int word, NeighbourLists& lists
 }
 
 void compare_upper_bounds(std::span<const Box> boxes, int word, UpperBounds& bounds) {
-    if (bounds.watching[word] == 0) return;
-    const int end = std::min(64 * word + 64, static_cast<int>(boxes.size()));
-    for (int i = 64 * word; i < end; ++i) {
+    const auto compare = [&](int i) {
         const UpperBounds::Beyond other = bounds.beyond[i];
         bounds.reaches[i] = {boxes[i].xmax >= boxes[other.x].xmin, boxes[i].ymax >= boxes[other.y].ymin};
+    };
+    const std::uint64_t watching = bounds.watching[word];
+    if (std::popcount(watching) < 24) {
+        for (std::uint64_t left = watching; left != 0; left &= left - 1) compare(64 * word + std::countr_zero(left));
+    } else {  // all, which is faster than to ask who
+        const int end = std::min(64 * word + 64, static_cast<int>(boxes.size()));
+        for (int i = 64 * word; i < end; ++i) compare(i);
     }
 }
 

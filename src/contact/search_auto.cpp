@@ -297,7 +297,9 @@ private:
                 }
             }
             const int bound = n.watch() == Watch::one_bound ? watched_bound(i, j) : least;
-            if (now.rest(bound) > needed && (n.watch() == Watch::one_bound || free(i, j, bound))) {
+            // What looks at the others would cost shall not come near to what is gained.
+            const double enough = n.watch() == Watch::one_bound ? needed : 4.0 * needed;
+            if (now.rest(bound) > enough && (n.watch() == Watch::one_bound || free(i, j, bound))) {
                 const double radius = share(mine, j, bound, true, now.rest(bound));
                 if (radius >= 0.0) {
                     if (n.watch() != Watch::one_bound) watch_bound(i, j, bound, overlaps);
@@ -526,7 +528,7 @@ private:
                     radius = std::min(radius, 0.5 * room);
                     return;
                 }
-                if (!usual || !(now.rest(bound) > needed) || !free(i, j, bound))
+                if (!usual || !(now.rest(bound) > 4.0 * needed) || !free(i, j, bound))
                     return set(i, j, n.overlaps(), Watch::all_bounds);
                 watch_bound(i, j, bound, n.overlaps());
             }
