@@ -7,7 +7,7 @@ namespace talus {
 
 void CellGrid::reset(int n, double width, double typical) {
     smallest_ = std::ldexp(typical, -12);
-    mask_ = std::bit_ceil(static_cast<std::size_t>(std::max(n, 64)) * 2) - 1;
+    mask_ = std::bit_ceil(static_cast<std::size_t>(std::max(n, 64))) - 1;
     for (int k = 0; k < level_count; ++k) {
         const double per_cell = 1.0 / std::ldexp(smallest_, k);
         const double across = std::clamp(width * per_cell, 3.0, 1e9);

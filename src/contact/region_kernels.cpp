@@ -13,7 +13,7 @@ namespace {
 
 struct Kernels {
     void (*find_escaped)(std::span<const Box>, const Vec2&, const Regions&, int, int, std::vector<int>&);
-    void (*compare_watched)(std::span<const Box>, int, NeighbourLists&);
+    void (*compare_watched)(std::span<const Box>, WatchedPairs&);
 };
 
 // ---- any processor ------------------------------------------------------------------------------------------------------
@@ -35,10 +35,10 @@ bool overlapping(const Box& a, const Box& b) {
     return (a.xmin <= b.xmax) & (b.xmin <= a.xmax) & (a.ymin <= b.ymax) & (b.ymin <= a.ymax);
 }
 
-void compare_plain(std::span<const Box> boxes, int word, NeighbourLists& lists) {
-    for (std::uint64_t left = lists.watching()[word]; left != 0; left &= left - 1) {
-        const int i = 64 * word + std::countr_zero(left);
-        for (Neighbour& n : lists.watched_by(i)) n.set_overlaps(overlapping(boxes[i], boxes[n.box()]));
+void compare_plain(std::span<const Box> boxes, WatchedPairs& pairs) {
+    for (std::size_t k = 0; k < pairs.box.size(); ++k) {
+        const std::uint32_t other = pairs.other[k] & ~WatchedPairs::flag;
+        pairs.other[k] = other | (overlapping(boxes[pairs.box[k]], boxes[other]) ? WatchedPairs::flag : 0);
     }
 }
 
@@ -77,36 +77,32 @@ constexpr Kernels plain{find_escaped_plain, compare_plain};
     find_escaped_plain(boxes, centre, regions, i, end, escaped);
 }
 
-// Four pairs at a time, two in a register: most boxes watch no more, so that the loop has no end to guess. Bounds of the
-// second of a pair change places and those that bound from above their sign: all four must then be smaller or equal.
-[[gnu::target("avx512f,avx512dq,avx512vl,bmi2")]] void compare_avx512(std::span<const Box> boxes, int word,
-                                                                      NeighbourLists& lists) {
-    static_assert(sizeof(Neighbour) == 4 && sizeof(Box) == 32);
+// Eight pairs at a time, two in a register. Bounds of the second of a pair change places and those that bound from above
+// their sign: all four must then be smaller or equal.
+[[gnu::target("avx512f,avx512dq,avx512vl,bmi2")]] void compare_avx512(std::span<const Box> boxes, WatchedPairs& pairs) {
     const __m512d sign = _mm512_setr_pd(0.0, 0.0, -0.0, -0.0, 0.0, 0.0, -0.0, -0.0);
-    const __m128i number = _mm_set1_epi32(Neighbour::most - 1), without_flag = _mm_set1_epi32(0x7fffffff);
-    const __m128i flag = _mm_set1_epi32(static_cast<int>(0x80000000u));
-    for (std::uint64_t left = lists.watching()[word]; left != 0; left &= left - 1) {
-        const int i = 64 * word + std::countr_zero(left);
-        const auto watched = lists.watched_by(i);
-        const __m512d bounds = _mm512_xor_pd(_mm512_broadcast_f64x4(_mm256_loadu_pd(&boxes[i].xmin)), sign);
-        for (std::size_t k = 0; k < watched.size(); k += 4) {
-            const auto there = static_cast<__mmask8>(_bzhi_u32(15u, static_cast<std::uint32_t>(watched.size() - k)));
-            auto* entries = reinterpret_cast<int*>(&watched[k]);
-            const __m128i old = _mm_maskz_loadu_epi32(there, entries);  // beyond the last: box 0
-            const __m128i box = _mm_and_si128(old, number);
-            const auto two = [&](int first, int second) __attribute__((target("avx512f,avx512dq,avx512vl,bmi2"))) {
-                const __m512d both = _mm512_insertf64x4(_mm512_castpd256_pd512(_mm256_loadu_pd(&boxes[first].xmin)),
-                                                        _mm256_loadu_pd(&boxes[second].xmin), 1);
-                const __m512d other = _mm512_xor_pd(_mm512_permutex_pd(both, 0x4e), sign);
-                return static_cast<std::uint32_t>(_mm512_cmp_pd_mask(bounds, other, _CMP_LE_OQ));
-            };
-            const std::uint32_t smaller = two(_mm_cvtsi128_si32(box), _mm_extract_epi32(box, 1)) |
-                                          two(_mm_extract_epi32(box, 2), _mm_extract_epi32(box, 3)) << 8;
-            const std::uint32_t all_four = smaller & (smaller >> 1) & (smaller >> 2) & (smaller >> 3);
-            const auto overlaps = static_cast<__mmask8>(_pext_u32(all_four, 0x1111u));
-            const __m128i apart = _mm_and_si128(old, without_flag);
-            _mm_mask_storeu_epi32(entries, there, _mm_mask_or_epi32(apart, overlaps, apart, flag));
+    const __m256i flag = _mm256_set1_epi32(static_cast<int>(WatchedPairs::flag));
+    for (std::size_t k = 0; k < pairs.box.size(); k += 8) {
+        const std::size_t left = pairs.box.size() - k;
+        const auto present = static_cast<__mmask8>(left >= 8 ? 255u : (1u << left) - 1);  // beyond the last: box 0 twice
+        const __m256i other = _mm256_andnot_si256(flag, _mm256_maskz_loadu_epi32(present, &pairs.other[k]));
+        alignas(32) std::uint32_t here[8], there[8];
+        _mm256_store_si256(reinterpret_cast<__m256i*>(here), _mm256_maskz_loadu_epi32(present, &pairs.box[k]));
+        _mm256_store_si256(reinterpret_cast<__m256i*>(there), other);
+        std::uint32_t smaller = 0;
+        for (int p = 0; p < 8; p += 2) {
+            const __m512d a = _mm512_insertf64x4(_mm512_castpd256_pd512(_mm256_loadu_pd(&boxes[here[p]].xmin)),
+                                                 _mm256_loadu_pd(&boxes[here[p + 1]].xmin), 1);
+            const __m512d b = _mm512_insertf64x4(_mm512_castpd256_pd512(_mm256_loadu_pd(&boxes[there[p]].xmin)),
+                                                 _mm256_loadu_pd(&boxes[there[p + 1]].xmin), 1);
+            const __m512d turned = _mm512_maskz_permutex_pd(255, b, 0x4e);
+            smaller |= static_cast<std::uint32_t>(
+                           _mm512_cmp_pd_mask(_mm512_xor_pd(a, sign), _mm512_xor_pd(turned, sign), _CMP_LE_OQ))
+                       << (4 * p);
         }
+        const std::uint32_t all_four = smaller & (smaller >> 1) & (smaller >> 2) & (smaller >> 3);
+        const auto overlaps = static_cast<__mmask8>(_pext_u32(all_four, 0x11111111u));
+        _mm256_mask_storeu_epi32(&pairs.other[k], present, _mm256_mask_or_epi32(other, overlaps, other, flag));
     }
 }
 
@@ -127,9 +123,7 @@ void find_escaped(std::span<const Box> boxes, const Vec2& centre, const Regions&
     best.find_escaped(boxes, centre, regions, begin, end, escaped);
 }
 
-void compare_watched(std::span<const Box> boxes, int word, NeighbourLists& lists) {
-    best.compare_watched(boxes, word, lists);
-}
+void compare_watched(std::span<const Box> boxes, WatchedPairs& pairs) { best.compare_watched(boxes, pairs); }
 
 void compare_upper_bounds(std::span<const Box> boxes, int word, UpperBounds& bounds) {
     const auto compare = [&](int i) {

@@ -1,7 +1,6 @@
 // What safe regions do with every box at every step: two loops, in the widest vector registers there are.
 #pragma once
 
-#include "contact/neighbour_lists.hpp"
 #include "core/types.hpp"
 
 #include <cstdint>
@@ -20,8 +19,13 @@ struct Regions {
 void find_escaped(std::span<const Box> boxes, const Vec2& centre, const Regions& regions, int begin, int end,
                   std::vector<int>& escaped);
 
-/// Compares boxes 64 x word to 64 x word + 63 with those that they watch, and notes which overlap.
-void compare_watched(std::span<const Box> boxes, int word, NeighbourLists& lists);
+/// Pairs of which all bounds are compared.
+struct WatchedPairs {
+    std::vector<std::uint32_t> box, other;  // [pairs] the highest bit of `other` says whether they overlap
+    static constexpr std::uint32_t flag = 1u << 31;
+};
+
+void compare_watched(std::span<const Box> boxes, WatchedPairs& pairs);
 
 /// Pairs that hang on one inequality: the upper bound of one box against the lower bound of another. A box watches one other
 /// beyond each of its two upper bounds.

@@ -90,15 +90,20 @@ public:
     void pairs(std::vector<Pair>& pairs) const override {
         pairs.clear();
         bool sorted = true;
-        for (int i = 0; i < n_; ++i) {
+        for (int w = 0; w < static_cast<int>(watched_.size()); ++w) {
             const std::size_t first = pairs.size();
-            for (const Neighbour n : lists_.of(i)) {
-                const Pair pair{std::min(i, n.box()), std::max(i, n.box())};
-                if (keeper(pair.a, pair.b) != i) continue;
-                if (!(n.watch() == Watch::one_bound ? reaches(i, n.box()) : n.overlaps())) continue;
-                pairs.push_back(pair);
-                sorted = sorted && pair.a == i;
-            }
+            const auto tell = [&](int i, int j) {
+                pairs.push_back({std::min(i, j), std::max(i, j)});
+                sorted = sorted && i < j;
+            };
+            for (int i = few * w; i < std::min(few * w + few, n_); ++i)
+                for (const Neighbour n : lists_.of(i)) {
+                    if (n.watch() == Watch::all_bounds || keeper(i, n.box()) != i) continue;
+                    if (n.watch() == Watch::one_bound ? reaches(i, n.box()) : n.overlaps()) tell(i, n.box());
+                }
+            for (std::size_t k = 0; k < watched_[w].box.size(); ++k)
+                if (watched_[w].other[k] & WatchedPairs::flag)
+                    tell(static_cast<int>(watched_[w].box[k]), static_cast<int>(watched_[w].other[k] & ~WatchedPairs::flag));
             std::sort(pairs.begin() + static_cast<std::ptrdiff_t>(first), pairs.end());
         }
         if (!sorted) std::sort(pairs.begin(), pairs.end());
@@ -107,8 +112,8 @@ public:
     std::string choice() const override {
         if (step_ == 0) return {};
         std::size_t watched = 0;
-        for (int i = 0; i < n_; ++i)
-            watched += lists_.watched_by(i).size() + (upper_.beyond[i].x != i) + (upper_.beyond[i].y != i);
+        for (int i = 0; i < n_; ++i) watched += (upper_.beyond[i].x != i) + (upper_.beyond[i].y != i);
+        for (const WatchedPairs& pairs : watched_) watched += pairs.box.size();
         char text[120];
         std::snprintf(text, sizeof text,
                       "safe regions, %.2g %% of the boxes looked at in a step, %.2g pairs per box watched",
@@ -124,11 +129,12 @@ private:
     };
     // A look costs about as much as 100 comparisons. Half or twice of each number costs up to a tenth more, in slow or in
     // fast scenes.
-    static constexpr double patience = 40.0;       // steps that the room of a pair must last, or it is watched
+    static constexpr double patience = 64.0;       // steps that the room of a pair must last, or it is watched
     static constexpr int rest = 64;                // steps between questions whether a pair may be left alone again
-    static constexpr double margin_growth = 12.0;  // margin = sqrt(this x speed x size)
+    static constexpr double margin_growth = 20.0;  // margin = sqrt(this x speed x size)
     static constexpr double unknown_speed = 2e-5;  // of a block per step, until the first look
     static constexpr int sample_size = 31;         // boxes that tell of common motion
+    static constexpr int few = 16;                 // boxes whose watched pairs lie together
     static constexpr int many = 512;  // neighbours that make a hub: to find one of so many takes half a microsecond
 
     // ---- where boxes are, seen from the centre ----------------------------------------------------------------------
@@ -372,26 +378,33 @@ private:
     }
 
     void compare() {
-        const int words = static_cast<int>(upper_.watching.size());
+        const int words = static_cast<int>(upper_.watching.size()), groups = static_cast<int>(watched_.size());
         const int threads = n_ < 4000 ? 1 : thread_count();
-#pragma omp parallel for schedule(static) num_threads(threads)
-        for (int w = 0; w < words; ++w) {
-            compare_watched(boxes_, w, lists_);
-            compare_upper_bounds(boxes_, w, upper_);
+#pragma omp parallel num_threads(threads)
+        {
+#pragma omp for schedule(static) nowait
+            for (int g = 0; g < groups; ++g) compare_watched(boxes_, watched_[g]);
+#pragma omp for schedule(static)
+            for (int w = 0; w < words; ++w) compare_upper_bounds(boxes_, w, upper_);
         }
-        for (int w = step_ % rest; w < words; w += rest) reconsider_word(w);
+        for (int g = step_ % rest; g < groups; g += rest) reconsider_watched(g);
+        for (int w = step_ % rest; w < words; w += rest) reconsider_upper_bounds(w);
     }
 
     // Asks pairs that are watched whether they may be left alone again.
-    void reconsider_word(int w) {
-        for (std::uint64_t left = lists_.watching()[w]; left != 0; left &= left - 1) {
-            const int i = 64 * w + std::countr_zero(left);
-            for (const Neighbour n : lists_.watched_by(i))
-                if (calm(i, n.box())) {
-                    look_at(i, true);
-                    break;
-                }
+    void reconsider_watched(int group) {
+        const WatchedPairs& pairs = watched_[group];
+        calm_.clear();
+        for (std::size_t k = 0; k < pairs.box.size(); ++k) {
+            const int i = static_cast<int>(pairs.box[k]);
+            if (calm(i, static_cast<int>(pairs.other[k] & ~WatchedPairs::flag))) calm_.push_back(i);
         }
+        std::sort(calm_.begin(), calm_.end());
+        calm_.erase(std::unique(calm_.begin(), calm_.end()), calm_.end());
+        for (const int i : calm_) look_at(i, true);
+    }
+
+    void reconsider_upper_bounds(int w) {
         for (std::uint64_t left = upper_.watching[w]; left != 0; left &= left - 1) {
             const int i = 64 * w + std::countr_zero(left);
             const UpperBounds::Beyond beyond = upper_.beyond[i];
@@ -412,13 +425,33 @@ private:
     bool stores(int i, int j) const { return !hub_[i] || hub_[j]; }
 
     /// Of the two of a pair, the one that watches it and tells of it.
-    int keeper(int a, int b) const { return hub_[a] && !hub_[b] ? b : a; }
+    int keeper(int i, int j) const { return hub_[i] != hub_[j] ? (hub_[i] ? j : i) : std::min(i, j); }
 
     void set(int i, int j, bool overlaps, Watch watch) {
-        forget_bound(i, j);
-        const int first = watch == Watch::all_bounds ? keeper(std::min(i, j), std::max(i, j)) : -1;
-        if (stores(i, j)) lists_.set(i, j, overlaps, watch, first == i);
-        if (stores(j, i)) lists_.set(j, i, overlaps, watch, first == j);
+        forget(i, j);
+        if (stores(i, j)) *lists_.find(i, j) = Neighbour(j, overlaps, watch);
+        if (stores(j, i)) *lists_.find(j, i) = Neighbour(i, overlaps, watch);
+        if (watch != Watch::all_bounds) return;
+        const int box = keeper(i, j);
+        WatchedPairs& pairs = watched_[box / few];
+        pairs.box.push_back(static_cast<std::uint32_t>(box));
+        pairs.other.push_back(static_cast<std::uint32_t>(i + j - box) | (overlaps ? WatchedPairs::flag : 0));
+    }
+
+    /// The pair is watched no more.
+    void forget(int i, int j) {
+        const int box = keeper(i, j);
+        const Watch watch = lists_.find(box, i + j - box)->watch();
+        if (watch == Watch::one_bound) forget_bound(i, j);
+        if (watch != Watch::all_bounds) return;
+        const auto here = static_cast<std::uint32_t>(box), there = static_cast<std::uint32_t>(i + j - box);
+        WatchedPairs& pairs = watched_[box / few];
+        std::size_t k = 0;
+        while (pairs.box[k] != here || (pairs.other[k] & ~WatchedPairs::flag) != there) ++k;
+        pairs.box[k] = pairs.box.back();
+        pairs.other[k] = pairs.other.back();
+        pairs.box.pop_back();
+        pairs.other.pop_back();
     }
 
     template <class Visit>
@@ -438,7 +471,7 @@ private:
     }
 
     void part(int i, int j) {
-        forget_bound(i, j);
+        forget(i, j);
         if (stores(i, j)) lists_.remove(i, j);
         if (stores(j, i)) lists_.remove(j, i);
     }
@@ -484,6 +517,7 @@ private:
         upper_.beyond.resize(n_);
         for (int i = 0; i < n_; ++i) upper_.beyond[i] = {i, i};
         upper_.watching.assign((n_ + 63) / 64, 0);
+        watched_.assign((n_ + few - 1) / few, {});
         for (int i = 0; i < n_; ++i) {
             if (!present(boxes_[i])) {
                 take_out(i);
@@ -587,11 +621,12 @@ private:
     CellGrid grid_;  // coarse boxes
     NeighbourLists lists_;
     UpperBounds upper_;
+    std::vector<WatchedPairs> watched_;  // by groups of boxes
     std::vector<char> hub_;
 
     std::vector<int> escaped_;
     std::vector<std::vector<int>> escaped_of_;  // by thread
-    std::vector<int> old_;
+    std::vector<int> old_, calm_;
     std::vector<Neighbour> seen_;
     std::int64_t looks_ = 0;
 };
