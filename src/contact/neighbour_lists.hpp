@@ -74,7 +74,10 @@ private:
         auto& free = free_[place.size];
         if (free.empty()) {
             place.first = static_cast<std::uint32_t>(pool_.size());
-            pool_.resize(pool_.size() + room(place));
+            const std::size_t needed = pool_.size() + room(place);
+            if (needed > pool_.capacity())
+                pool_.reserve(needed + needed / 8);  // not twice as much: half of it stayed unused
+            pool_.resize(needed);
         } else {
             place.first = free.back();
             free.pop_back();
