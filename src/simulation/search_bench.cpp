@@ -15,8 +15,14 @@
 namespace talus {
 namespace {
 
-constexpr std::size_t direct_affordable = 20'000;        // boxes: 0.1 s per step
+constexpr std::size_t direct_affordable = 20'000;        // boxes: 0.1 s per step with `direct-simd`
 constexpr std::size_t direct_affordable_once = 200'000;  // 10 s
+
+struct Slow {
+    const char* method;
+    std::size_t boxes;  // from some 0.05 s per step on: minutes for a motion of 200 steps, of which each is repeated
+};
+constexpr Slow slow[] = {{"direct", 3'000}, {"direct-simd", 20'000}, {"dess", 20'000}, {"dess-fused", 30'000}};
 
 std::string name_of(const SearchCost& cost) {
     return cost.method + (cost.threads > 1 ? ", " + std::to_string(cost.threads) + " threads" : "") +
@@ -26,9 +32,10 @@ std::string name_of(const SearchCost& cost) {
 /// Throws if the reference itself is wrong: then nothing that it judges is worth reading.
 std::vector<Pair> reference(std::span<const Box> boxes, Check check, bool first) {
     std::vector<Pair> pairs = pairs_by_sweep(boxes);
-    if (check == Check::affordable && boxes.size() > (first ? direct_affordable_once : direct_affordable)) return pairs;
+    const bool plain = check == Check::direct;
+    if (!plain && boxes.size() > (first ? direct_affordable_once : direct_affordable)) return pairs;
     std::vector<Pair> direct;
-    make_search("direct")->find(boxes, direct);
+    make_search(plain ? "direct" : "direct-simd")->find(boxes, direct);
     if (direct != pairs) throw std::logic_error("the sweep that judges searches and `direct` find different pairs");
     return pairs;
 }
@@ -158,8 +165,8 @@ std::vector<std::string> bench_methods() {
 }
 
 std::size_t largest_by_default(const std::string& method) {
-    if (method.rfind("direct", 0) == 0) return 20'000;  // O(N^2): 0.1 s per step
-    if (method.rfind("dess", 0) == 0) return 50'000;    // O(N^1.5): 0.1 s per step
+    for (const Slow& each : slow)
+        if (method == each.method) return each.boxes;
     return std::numeric_limits<std::size_t>::max();
 }
 

@@ -13,8 +13,7 @@ namespace talus {
 
 enum class Check {
     none,
-    affordable,  // a sweep at every step, itself compared with `direct` at every step up to 2e4 boxes, at the first up to
-                 // 2e5
+    affordable,  // a sweep at every step, itself compared with `direct-simd`: always up to 2e4 boxes, at first up to 2e5
     direct,      // a sweep, compared with `direct` at every step whatever the number of boxes
 };
 
@@ -45,7 +44,7 @@ struct SearchCost {
 /// Every name of make_search, and `read`.
 std::vector<std::string> bench_methods();
 
-/// The most boxes for which a method is tried without being asked for; slow ones would take hours above.
+/// The most boxes for which a method is tried without being asked for; slow ones would take too long above.
 std::size_t largest_by_default(const std::string& method);
 
 /// Throws InputError for a method, number of threads, skin or repetition that cannot be.
