@@ -82,6 +82,6 @@ private:
 }  // namespace
 
 std::unique_ptr<PairSearch> make_box2d() { return std::make_unique<Box2d>(0.05); }
-std::unique_ptr<PairSearch> make_box2d_wide() { return std::make_unique<Box2d>(0.5); }
+std::unique_ptr<PairSearch> make_box2d_wide() { return std::make_unique<Box2d>(0.35); }
 
 }  // namespace talus::peers
