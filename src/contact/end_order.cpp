@@ -2,7 +2,6 @@
 
 #include "contact/end_disorder.hpp"
 #include "contact/search.hpp"
-#include "contact/sorted_ends.hpp"
 
 #include <algorithm>
 #include <array>
@@ -80,11 +79,10 @@ bool EndOrder::repair(std::span<const Box> boxes, int from, int to, Crossings& m
         for (int i = 0; i < found; ++i)
             for (int place = places[i]; place < to; ++place) {
                 const Sunk sunk = sink(coordinate, place, from, met);
-                if (sunk == Sunk::lost) return false;
+                if (sunk == Sunk::lost || !worth_it(met.exchanges, static_cast<std::int64_t>(met.noted))) return false;
                 // The end that is here now is above the one that was: the next one may be below it.
                 if (place + 1 == to || coordinate[2 * tag_[place]] < coordinate[2 * tag_[place + 1]]) break;
             }
-        if (!worth_it(met.exchanges, static_cast<std::int64_t>(met.noted))) return false;
     }
     sort_out(boxes, met);
     return true;
@@ -101,7 +99,7 @@ bool EndOrder::join(std::span<const Box> boxes, int at, int to, Crossings& met) 
 }
 
 bool EndOrder::worth_it(std::int64_t exchanges, std::int64_t crossings) const {
-    return exchanges + SortedEnds::crossing_cost * crossings <= SortedEnds::worth_repairing(size() / 2);
+    return exchanges + crossing_cost * crossings <= worth_repairing * (size() / 2);
 }
 
 /// Lets an end change places with those before it until it is in order. Whether it crosses those it passes is as good as a

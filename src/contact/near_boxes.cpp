@@ -9,22 +9,24 @@
 namespace talus {
 namespace {
 
+enum class Near { along_both, along_y, rarely };
+
 /// A branch per box would be guessed wrong at each that is near: each is written, and the next one over it unless it counts.
-template <bool along_x>
+template <Near kind>
 int baseline(const RoundedBoxes& of, int place, int from, int to, int* near) {
     const float *xmin = of.xmin.data(), *ymin = of.ymin.data(), *xmax = of.xmax.data(), *ymax = of.ymax.data();
     int count = 0;
     for (int k = from; k < to; ++k) {
         near[count] = k;
-        count += (!along_x || ((xmin[place] <= xmax[k]) & (xmin[k] <= xmax[place]))) & (ymin[place] <= ymax[k]) &
-                 (ymin[k] <= ymax[place]);
+        count += (kind == Near::along_y || ((xmin[place] <= xmax[k]) & (xmin[k] <= xmax[place]))) &
+                 (ymin[place] <= ymax[k]) & (ymin[k] <= ymax[place]);
     }
     return count;
 }
 
 #ifdef TALUS_VECTOR_UNITS
 
-template <bool along_x>
+template <Near kind>
 TALUS_AVX2 int avx2(const RoundedBoxes& of, int place, int from, int to, int* near) {
     const float *xmin = of.xmin.data(), *ymin = of.ymin.data(), *xmax = of.xmax.data(), *ymax = of.ymax.data();
     const __m256 x0 = _mm256_set1_ps(xmin[place]), x1 = _mm256_set1_ps(xmax[place]);
@@ -33,17 +35,17 @@ TALUS_AVX2 int avx2(const RoundedBoxes& of, int place, int from, int to, int* ne
     for (; from + 8 <= to; from += 8) {
         __m256 overlap = _mm256_cmp_ps(y0, _mm256_loadu_ps(ymax + from), _CMP_LE_OQ);
         overlap = _mm256_and_ps(overlap, _mm256_cmp_ps(_mm256_loadu_ps(ymin + from), y1, _CMP_LE_OQ));
-        if (along_x) {
+        if (kind != Near::along_y) {
             overlap = _mm256_and_ps(overlap, _mm256_cmp_ps(x0, _mm256_loadu_ps(xmax + from), _CMP_LE_OQ));
             overlap = _mm256_and_ps(overlap, _mm256_cmp_ps(_mm256_loadu_ps(xmin + from), x1, _CMP_LE_OQ));
         }
         for (auto mask = static_cast<unsigned>(_mm256_movemask_ps(overlap)); mask != 0; mask &= mask - 1)
             near[count++] = from + std::countr_zero(mask);
     }
-    return count + baseline<along_x>(of, place, from, to, near + count);
+    return count + baseline<kind>(of, place, from, to, near + count);
 }
 
-template <bool along_x>
+template <Near kind>
 TALUS_AVX512 int avx512(const RoundedBoxes& of, int place, int from, int to, int* near) {
     const float *xmin = of.xmin.data(), *ymin = of.ymin.data(), *xmax = of.xmax.data(), *ymax = of.ymax.data();
     const __m512 x0 = _mm512_set1_ps(xmin[place]), x1 = _mm512_set1_ps(xmax[place]);
@@ -54,11 +56,11 @@ TALUS_AVX512 int avx512(const RoundedBoxes& of, int place, int from, int to, int
         const auto inside = static_cast<__mmask16>(to - from < 16 ? (1 << (to - from)) - 1 : 0xffff);
         __mmask16 mask = _mm512_mask_cmp_ps_mask(inside, y0, _mm512_maskz_loadu_ps(inside, ymax + from), _CMP_LE_OQ);
         mask = _mm512_mask_cmp_ps_mask(mask, _mm512_maskz_loadu_ps(inside, ymin + from), y1, _CMP_LE_OQ);
-        if (along_x) {
+        if (kind != Near::along_y) {
             mask = _mm512_mask_cmp_ps_mask(mask, x0, _mm512_maskz_loadu_ps(inside, xmax + from), _CMP_LE_OQ);
             mask = _mm512_mask_cmp_ps_mask(mask, _mm512_maskz_loadu_ps(inside, xmin + from), x1, _CMP_LE_OQ);
-            if (mask == 0) continue;
         }
+        if (kind == Near::rarely && mask == 0) continue;
         const __m512i places = _mm512_add_epi32(_mm512_set1_epi32(from), counting);
         _mm512_storeu_si512(near + count, _mm512_maskz_compress_epi32(mask, places));
         count += std::popcount(static_cast<unsigned>(mask));
@@ -68,13 +70,13 @@ TALUS_AVX512 int avx512(const RoundedBoxes& of, int place, int from, int to, int
 
 #endif
 
-template <bool along_x>
+template <Near kind>
 FindNear kernel([[maybe_unused]] VectorUnit unit) {
 #ifdef TALUS_VECTOR_UNITS
-    if (unit == VectorUnit::avx512) return avx512<along_x>;
-    if (unit == VectorUnit::avx2) return avx2<along_x>;
+    if (unit == VectorUnit::avx512) return avx512<kind>;
+    if (unit == VectorUnit::avx2) return avx2<kind>;
 #endif
-    return baseline<along_x>;
+    return baseline<kind>;
 }
 
 }  // namespace
@@ -90,7 +92,8 @@ void RoundedBoxes::set(std::size_t place, const Box& box) {
     ymax[place] = static_cast<float>(box.ymax);
 }
 
-FindNear near_kernel(VectorUnit unit) { return kernel<true>(unit); }
-FindNear near_along_y_kernel(VectorUnit unit) { return kernel<false>(unit); }
+FindNear near_kernel(VectorUnit unit) { return kernel<Near::along_both>(unit); }
+FindNear rarely_near_kernel(VectorUnit unit) { return kernel<Near::rarely>(unit); }
+FindNear near_along_y_kernel(VectorUnit unit) { return kernel<Near::along_y>(unit); }
 
 }  // namespace talus

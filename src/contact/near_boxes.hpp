@@ -19,10 +19,13 @@ struct RoundedBoxes {
 /// are; `near` has room for to - from and 16 more. Bounds that are not numbers overlap nothing.
 using FindNear = int (*)(const RoundedBoxes& boxes, int place, int from, int to, int* near);
 
-/// For many boxes of which very few are near.
+/// For few boxes of which some are near.
 FindNear near_kernel(VectorUnit unit);
 
-/// Along y only, for few boxes of which some are near. Bounds along x are not looked at.
+/// For many boxes of which very few are near.
+FindNear rarely_near_kernel(VectorUnit unit);
+
+/// Along y only: bounds along x are not looked at.
 FindNear near_along_y_kernel(VectorUnit unit);
 
 }  // namespace talus

@@ -1,6 +1,7 @@
 #include "contact/pair_set.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace talus {
 
@@ -75,17 +76,14 @@ void PairSet::list(std::vector<Pair>& pairs) const {
 }
 
 void sort_pairs(std::size_t boxes, std::span<const Pair> pairs, std::vector<Pair>& sorted) {
-    std::vector<std::size_t> end(boxes + 1, 0);  // of the pairs of each box, once all are placed
-    for (const Pair& pair : pairs) ++end[pair.a + 1];
-    for (std::size_t a = 0; a < boxes; ++a) end[a + 1] += end[a];
+    std::vector<int> place_a(boxes), place_b(boxes);
+    for (const Pair& pair : pairs) ++place_a[pair.a], ++place_b[pair.b];
+    for (auto* places : {&place_a, &place_b})
+        for (int next = 0; int& place : *places) next += std::exchange(place, next);
+    std::vector<Pair> by_b(pairs.size());
+    for (const Pair& pair : pairs) by_b[place_b[pair.b]++] = pair;
     sorted.resize(pairs.size());
-    for (const Pair& pair : pairs) sorted[end[pair.a]++] = pair;
-    auto first = sorted.begin();
-    for (std::size_t a = 0; a < boxes; ++a) {
-        const auto last = sorted.begin() + static_cast<std::ptrdiff_t>(end[a]);
-        std::sort(first, last);
-        first = last;
-    }
+    for (const Pair& pair : by_b) sorted[place_a[pair.a]++] = pair;  // keeps the order of b
 }
 
 }  // namespace talus

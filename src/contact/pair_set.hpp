@@ -59,7 +59,8 @@ private:
     std::vector<FewIds> larger_;  // [number of boxes]
 };
 
-/// Sorts pairs of boxes numbered from 0 to `boxes`: a counting sort by the first, some four times as fast as a general one.
+/// Sorts pairs of boxes numbered from 0 to `boxes`, less than 2^31 of them, each given once: by counting, without one
+/// comparison.
 void sort_pairs(std::size_t boxes, std::span<const Pair> pairs, std::vector<Pair>& sorted);
 
 }  // namespace talus

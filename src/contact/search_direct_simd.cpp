@@ -35,7 +35,7 @@ private:
         }
     }
 
-    const FindNear find_near_ = near_kernel(best_vector_unit());
+    const FindNear find_near_ = rarely_near_kernel(best_vector_unit());
     RoundedBoxes rounded_;
     std::array<int, tile + 16> near_;
     std::vector<Pair> pairs_;

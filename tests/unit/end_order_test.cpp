@@ -56,7 +56,7 @@ TEST_CASE("ends are listed by coordinate, lower ends first, and a list repaired 
         Random shaking(3);
         for (int step = 0; step < 20; ++step) {
             for (Box& box : moving) {
-                const double by = 0.01 * shaking.normal();
+                const double by = 0.002 * shaking.normal();
                 box.ymin += by, box.ymax += by;
             }
             for (int chunk = 0; chunk < chunks; ++chunk) {
