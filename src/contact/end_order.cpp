@@ -1,125 +1,152 @@
 #include "contact/end_order.hpp"
 
+#include "contact/end_disorder.hpp"
 #include "contact/search.hpp"
-#include "contact/sorted_ends.hpp"
-#include "contact/vector_unit.hpp"
 
 #include <algorithm>
+#include <array>
+#include <bit>
+#include <utility>
 
 namespace talus {
 namespace {
 
-constexpr std::size_t run = 16;  // ends looked at in one go
+/// The order of ends at a and b, with tags t and u.
+bool below(double a, int t, double b, int u) {
+    if (a != b) return a < b;
+    if ((t ^ u) & 1) return u & 1;
+    return t < u;
+}
 
-/// Brings whole runs of ends up to date, from `from` on, and stops before the first that is out of order, its coordinates
-/// new as well. `coordinate`: of the boxes, four each, beginning at the lower end along this axis.
-[[gnu::always_inline]] inline std::size_t refresh(const double* coordinate, const int* tag, double* at, std::size_t from,
-                                                  std::size_t to) {
-    for (; from + run <= to; from += run) {
-        for (std::size_t k = from; k < from + run; ++k) at[k] = coordinate[2 * tag[k]];
-        int disorder = 0;
-        for (std::size_t k = from; k < from + run; ++k) disorder |= !(at[k - 1] < at[k]);
-        if (disorder) break;
+struct Keyed {
+    std::uint64_t key;
+    int tag;
+};
+
+/// Whole numbers in the order of the doubles; both zeros are one.
+std::uint64_t key(double at) {
+    const auto bits = std::bit_cast<std::uint64_t>(at + 0.0);
+    return bits >> 63 ? ~bits : bits | std::uint64_t{1} << 63;
+}
+
+/// By digits, the lowest first: each pass keeps the order of equal ones.
+void sort(std::vector<Keyed>& ends) {
+    constexpr int digit_bits = 11, digits = 6;
+    std::vector<std::array<int, 1 << digit_bits>> count(digits);
+    const auto digit = [](std::uint64_t of, int d) { return of >> (d * digit_bits) & ((1 << digit_bits) - 1); };
+    for (const Keyed& end : ends)
+        for (int d = 0; d < digits; ++d) ++count[d][digit(end.key, d)];
+    std::vector<Keyed> sorted(ends.size());
+    for (int d = 0; d < digits; ++d) {
+        if (std::ranges::count(count[d], 0) == (1 << digit_bits) - 1) continue;  // the same in all
+        int place = 0;
+        for (int& of_digit : count[d]) place += std::exchange(of_digit, place);
+        for (const Keyed& end : ends) sorted[count[d][digit(end.key, d)]++] = end;
+        ends.swap(sorted);
     }
-    return from;
-}
-
-using Refresh = std::size_t (*)(const double*, const int*, double*, std::size_t, std::size_t);
-
-std::size_t baseline(const double* coordinate, const int* tag, double* at, std::size_t from, std::size_t to) {
-    return refresh(coordinate, tag, at, from, to);
-}
-#ifdef TALUS_VECTOR_UNITS
-TALUS_AVX2 std::size_t avx2(const double* coordinate, const int* tag, double* at, std::size_t from, std::size_t to) {
-    return refresh(coordinate, tag, at, from, to);
-}
-TALUS_AVX512 std::size_t avx512(const double* coordinate, const int* tag, double* at, std::size_t from, std::size_t to) {
-    return refresh(coordinate, tag, at, from, to);
-}
-#endif
-
-Refresh kernel([[maybe_unused]] VectorUnit unit) {
-#ifdef TALUS_VECTOR_UNITS
-    if (unit == VectorUnit::avx512) return avx512;
-    if (unit == VectorUnit::avx2) return avx2;
-#endif
-    return baseline;
-}
-
-bool below(double at, int tag, double other_at, int other_tag) {
-    if (at != other_at) return at < other_at;
-    if ((tag ^ other_tag) & 1) return other_tag & 1;
-    return tag < other_tag;
 }
 
 }  // namespace
 
+const double* EndOrder::coordinates(std::span<const Box> boxes) const {
+    return axis_ == Axis::x ? &boxes.front().xmin : &boxes.front().ymin;
+}
+
 void EndOrder::build(std::span<const Box> boxes) {
-    struct Entry {
-        double at;
-        int tag;
-    };
-    std::vector<Entry> ends;
+    std::vector<Keyed> ends;
     ends.reserve(2 * boxes.size());
-    for (std::size_t i = 0; i < boxes.size(); ++i) {
-        if (!present(boxes[i])) continue;
-        const int tag = 2 * static_cast<int>(i);
-        ends.push_back({axis_ == Axis::x ? boxes[i].xmin : boxes[i].ymin, tag});
-        ends.push_back({axis_ == Axis::x ? boxes[i].xmax : boxes[i].ymax, tag + 1});
-    }
-    std::sort(ends.begin(), ends.end(), [](const Entry& a, const Entry& b) { return below(a.at, a.tag, b.at, b.tag); });
-    at_.resize(ends.size());
-    tag_.resize(ends.size());
-    for (std::size_t k = 0; k < ends.size(); ++k) at_[k] = ends[k].at, tag_[k] = ends[k].tag;
-}
-
-bool EndOrder::repair(std::span<const Box> boxes, std::size_t from, std::size_t to, Crossings& crossings) {
-    static const Refresh refresh = kernel(best_vector_unit());
-    if (from == to) return true;
-    const double* const coordinate = axis_ == Axis::x ? &boxes.front().xmin : &boxes.front().ymin;
-    at_[from] = coordinate[2 * tag_[from]];
-    for (std::size_t k = from + 1; k < to;) {
-        k = refresh(coordinate, tag_.data(), at_.data(), k, to);
-        for (const std::size_t end = std::min(k + run, to); k < end; ++k) {
-            at_[k] = coordinate[2 * tag_[k]];
-            if (sink(k, from, crossings) == Sunk::lost) return false;
+    for (const int upper : {0, 1})
+        for (std::size_t i = 0; i < boxes.size(); ++i) {
+            const int tag = 2 * static_cast<int>(i) + upper;
+            if (present(boxes[i])) ends.push_back({key(coordinates(boxes)[2 * tag]), tag});
         }
-        if (!worth_it(crossings.exchanges, std::ssize(crossings.pairs))) return false;
-    }
-    return at_[from] == at_[from];
+    sort(ends);
+    tag_.resize(ends.size());
+    for (std::size_t k = 0; k < ends.size(); ++k) tag_[k] = ends[k].tag;
 }
 
-bool EndOrder::join(std::size_t at, std::size_t to, Crossings& crossings) {
-    for (std::size_t k = at; k < to; ++k) {
-        const Sunk sunk = sink(k, 0, crossings);
-        if (sunk == Sunk::lost || !worth_it(crossings.exchanges, std::ssize(crossings.pairs))) return false;
+bool EndOrder::repair(std::span<const Box> boxes, int from, int to, Crossings& met) {
+    static const FindDisorder find_disorder = disorder_kernel(best_vector_unit());
+    if (from == to) return true;
+    const double* const coordinate = coordinates(boxes);
+    const double first = coordinate[2 * tag_[from]];
+    if (first != first) return false;
+    // Block by block, so that what was looked at is still near when it is set right; half or twice as many cost the same.
+    constexpr int block = 512;
+    std::array<int, block + 8> places;
+    for (int next = from + 1; next < to; next += block) {
+        const int found = find_disorder(coordinate, tag_.data(), next, std::min(next + block, to), places.data());
+        for (int i = 0; i < found; ++i)
+            for (int place = places[i]; place < to; ++place) {
+                const Sunk sunk = sink(coordinate, place, from, met);
+                if (sunk == Sunk::lost || !worth_it(met.exchanges, static_cast<std::int64_t>(met.noted))) return false;
+                // The end that is here now is above the one that was: the next one may be below it.
+                if (place + 1 == to || coordinate[2 * tag_[place]] < coordinate[2 * tag_[place + 1]]) break;
+            }
+    }
+    sort_out(boxes, met);
+    return true;
+}
+
+bool EndOrder::join(std::span<const Box> boxes, int at, int to, Crossings& met) {
+    for (int k = at; k < to; ++k) {
+        const Sunk sunk = sink(coordinates(boxes), k, 0, met);
+        if (sunk == Sunk::lost || !worth_it(met.exchanges, static_cast<std::int64_t>(met.noted))) return false;
         if (sunk == Sunk::no) break;  // those above it stay above it
     }
+    sort_out(boxes, met);
     return true;
 }
 
 bool EndOrder::worth_it(std::int64_t exchanges, std::int64_t crossings) const {
-    return exchanges + SortedEnds::crossing_cost * crossings <= SortedEnds::worth_repairing(size() / 2);
+    return exchanges + crossing_cost * crossings <= worth_repairing * (size() / 2);
 }
 
-/// Lets an end change places with those before it until it is in order.
-EndOrder::Sunk EndOrder::sink(std::size_t place, std::size_t lowest, Crossings& crossings) {
-    const double at = at_[place];
-    const int tag = tag_[place];
+/// Lets an end change places with those before it until it is in order. Whether it crosses those it passes is as good as a
+/// coin toss: no branch asks for it.
+EndOrder::Sunk EndOrder::sink(const double* coordinate, int place, int lowest, Crossings& met) {
+    const int moving = tag_[place];
+    const double at = coordinate[2 * moving];
     if (at != at) return Sunk::lost;
-    std::size_t j = place;
-    for (; j > lowest && below(at, tag, at_[j - 1], tag_[j - 1]); --j) {
-        const int passed = tag_[j] = tag_[j - 1];
-        at_[j] = at_[j - 1];
-        const int differs = passed ^ tag;
-        if ((differs & 1) == 0) continue;
-        if (differs == 1) return Sunk::lost;  // the upper end of a box below its lower one
-        crossings.pairs.push_back({std::min(passed, tag) / 2, std::max(passed, tag) / 2});
+    int to = place;
+    while (to > lowest && below(at, moving, coordinate[2 * tag_[to - 1]], tag_[to - 1])) --to;
+    if (to == place) return Sunk::no;
+
+    if (met.noted + place - to > met.crossed.size()) met.crossed.resize(2 * (met.noted + place - to));
+    Crossings::Crossing* next = met.crossed.data() + met.noted;
+    int nearest = 2;
+    for (int k = place; k > to; --k) {
+        const int passed = tag_[k] = tag_[k - 1], differs = passed ^ moving;
+        *next = {passed, moving};
+        next += differs & 1;
+        nearest = std::min(nearest, differs);
     }
-    at_[j] = at;
-    tag_[j] = tag;
-    crossings.exchanges += static_cast<std::int64_t>(place - j);
-    return j == place ? Sunk::no : Sunk::yes;
+    tag_[to] = moving;
+    met.noted = next - met.crossed.data();
+    met.exchanges += place - to;
+    return nearest == 1 ? Sunk::lost : Sunk::yes;  // lost: the upper end of a box below its lower one
+}
+
+/// A lower end that slides below an upper one begins an overlap along this axis: the boxes were apart, and are a new pair if
+/// they overlap now. An upper end that slides below a lower one ends it: they may have been a pair. Of those that came
+/// apart along both axes at once, the list along y notes all; so the one along x may leave them out.
+void EndOrder::sort_out(std::span<const Box> boxes, Crossings& met) const {
+    met.begun.resize(met.noted);
+    met.ended.resize(met.noted);
+    Pair *begun = met.begun.data(), *ended = met.ended.data();
+    for (std::size_t k = 0; k < met.noted; ++k) {
+        const auto [passed, moving] = met.crossed[k];
+        const Pair pair{std::min(passed, moving) / 2, std::max(passed, moving) / 2};
+        const Box &a = boxes[pair.a], &b = boxes[pair.b];
+        const bool x = (a.xmin <= b.xmax) & (b.xmin <= a.xmax), y = (a.ymin <= b.ymax) & (b.ymin <= a.ymax);
+        const bool ends = moving & 1;
+        *begun = *ended = pair;
+        begun += !ends & x & y;
+        ended += ends & (y | (axis_ == Axis::y));
+    }
+    met.begun.resize(begun - met.begun.data());
+    met.ended.resize(ended - met.ended.data());
+    met.crossings = static_cast<std::int64_t>(met.noted);
 }
 
 }  // namespace talus

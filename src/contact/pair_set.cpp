@@ -1,6 +1,7 @@
 #include "contact/pair_set.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace talus {
 
@@ -16,21 +17,37 @@ FewIds::~FewIds() {
     if (capacity_ > few) delete[] many_;
 }
 
+Pair* FewIds::write(int a, Pair* to) const {
+    if (capacity_ == few)
+        for (int i = 0; i < few; ++i) to[i] = {a, few_[i]};
+    else
+        for (int i = 0; i < size_; ++i) to[i] = {a, many_[i]};
+    return to + size_;
+}
+
+/// How many are below. In the usual case without a branch: a search would guess wrong at each of its steps.
+int FewIds::below(int id) const {
+    if (capacity_ != few) return static_cast<int>(std::lower_bound(many_, many_ + size_, id) - many_);
+    int count = 0;
+    for (int i = 0; i < few; ++i) count += (i < size_) & (few_[i] < id);
+    return count;
+}
+
 void FewIds::insert(int id) {
-    int* const place = std::lower_bound(begin(), begin() + size_, id);
-    if (place != begin() + size_ && *place == id) return;
-    const auto before = place - begin();
+    const int place = below(id);
+    if (place < size_ && begin()[place] == id) return;
     if (size_ == capacity_) grow();
-    std::copy_backward(begin() + before, begin() + size_, begin() + size_ + 1);
-    begin()[before] = id;
+    int* const ids = begin();
+    std::copy_backward(ids + place, ids + size_, ids + size_ + 1);
+    ids[place] = id;
     ++size_;
 }
 
 void FewIds::erase(int id) {
-    int* const last = begin() + size_;
-    int* const place = std::lower_bound(begin(), last, id);
-    if (place == last || *place != id) return;
-    std::copy(place + 1, last, place);
+    const int place = below(id);
+    int* const ids = begin();
+    if (place == size_ || ids[place] != id) return;
+    std::copy(ids + place + 1, ids + size_, ids + place);
     --size_;
 }
 
@@ -52,24 +69,21 @@ void PairSet::assign(std::size_t boxes, std::span<const Pair> pairs) {
 void PairSet::list(std::vector<Pair>& pairs) const {
     std::size_t count = 0;
     for (const FewIds& ids : larger_) count += ids.size();
+    pairs.resize(count + FewIds::few);
+    Pair* next = pairs.data();
+    for (std::size_t a = 0; a < larger_.size(); ++a) next = larger_[a].write(static_cast<int>(a), next);
     pairs.resize(count);
-    auto next = pairs.begin();
-    for (std::size_t a = 0; a < larger_.size(); ++a)
-        for (const int b : larger_[a]) *next++ = {static_cast<int>(a), b};
 }
 
 void sort_pairs(std::size_t boxes, std::span<const Pair> pairs, std::vector<Pair>& sorted) {
-    std::vector<std::size_t> end(boxes + 1, 0);  // of the pairs of each box, once all are placed
-    for (const Pair& pair : pairs) ++end[pair.a + 1];
-    for (std::size_t a = 0; a < boxes; ++a) end[a + 1] += end[a];
+    std::vector<int> place_a(boxes), place_b(boxes);
+    for (const Pair& pair : pairs) ++place_a[pair.a], ++place_b[pair.b];
+    for (auto* places : {&place_a, &place_b})
+        for (int next = 0; int& place : *places) next += std::exchange(place, next);
+    std::vector<Pair> by_b(pairs.size());
+    for (const Pair& pair : pairs) by_b[place_b[pair.b]++] = pair;
     sorted.resize(pairs.size());
-    for (const Pair& pair : pairs) sorted[end[pair.a]++] = pair;
-    auto first = sorted.begin();
-    for (std::size_t a = 0; a < boxes; ++a) {
-        const auto last = sorted.begin() + static_cast<std::ptrdiff_t>(end[a]);
-        std::sort(first, last);
-        first = last;
-    }
+    for (const Pair& pair : by_b) sorted[place_a[pair.a]++] = pair;  // keeps the order of b
 }
 
 }  // namespace talus

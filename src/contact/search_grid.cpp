@@ -1,5 +1,6 @@
 // Hierarchical grid: boxes lie in cells of their own size, whatever the sizes beside them (D. Krijgsman, V. Ogarko & S.
 // Luding, Computational Particle Mechanics 1 (2014) 357-372). Made anew at each step.
+#include "contact/near_boxes.hpp"
 #include "contact/pair_set.hpp"
 #include "contact/search_methods.hpp"
 #include "contact/threads.hpp"
@@ -32,9 +33,10 @@ int reach(const Box& box) {
     return std::max({exponent(box.xmin), exponent(box.xmax), exponent(box.ymin), exponent(box.ymax)});
 }
 
-/// The cells of one size. A box lies in the cell of its lower left corner, which is found without rounding, so that boxes
-/// that overlap lie in the same cell or in cells side by side. The plane is wrapped around a table with a power of two of
-/// columns and rows: whatever the places of the boxes, it needs no more cells than they are many.
+/// The cells of one size, for boxes that are smaller. A box lies in the cell of its lower left corner, which is found
+/// without rounding, so that boxes that overlap lie in the same cell or in cells side by side. The plane is wrapped around a
+/// table with a power of two of columns and rows: wherever the boxes lie, there are at most four times as many cells as
+/// boxes.
 struct Level {
     static constexpr std::int64_t none = std::numeric_limits<std::int64_t>::max();
 
@@ -96,17 +98,16 @@ private:
     struct Found {
         std::vector<Pair> pairs;
         std::ptrdiff_t count = 0;
-    };
-
-    struct Range {
-        std::int64_t from, to;  // places in box_ and id_
+        std::vector<int> near;  // places of boxes that may overlap the one at hand
+        int near_count = 0;
     };
 
     static constexpr std::size_t worth_sharing = 1000;  // boxes; fewer are done before the threads have started
     static constexpr int absent = -1, giant = -2;
 
-    /// Sizes that occur get a level each, smallest first. The very small ones share one: each would look through many levels
-    /// above it, and their places could not be counted in cells.
+    /// Sizes that occur get a level, smallest first: one for each power of four, because small boxes have to look through
+    /// all levels above them and several boxes of a cell are compared at once; powers of two are 1.6 times as slow. The very
+    /// small sizes share one: their places could not be counted in cells.
     void choose_levels(std::span<const Box> boxes) {
         std::array<std::int64_t, 2048> of_size{};
         level_of_.resize(boxes.size());
@@ -120,14 +121,14 @@ private:
             farthest = std::max(farthest, far);
             ++of_size[level_of_[i]];
         }
-        const int smallest = std::max({1, farthest - 61, median(of_size) - 12});
+        const int usual = median(of_size), smallest = std::max({1, farthest - 61, usual - 12});
         std::array<int, 2048> level_of_size{};
         level_.clear();
         bool any = false;
         for (int e = 0; e < 2048; ++e) {
             any |= of_size[e] > 0;
             level_of_size[e] = static_cast<int>(level_.size());
-            if (!any || e < smallest) continue;
+            if (!any || e < smallest || (e - usual) % 2 != 0) continue;
             level_.emplace_back().cells_per_m = 1.0 / side(e);
             any = false;
         }
@@ -156,10 +157,12 @@ private:
         for (std::int64_t c = 0; c < cells; ++c) begin_[c + 2] += begin_[c + 1];
         box_.resize(begin_[cells + 1]);
         id_.resize(begin_[cells + 1]);
+        rounded_.resize(begin_[cells + 1]);
         for (std::size_t i = 0; i < boxes.size(); ++i) {
             if (level_of_[i] < 0) continue;
-            const std::int64_t place = begin_[cell_[i] + 1]++;
+            const int place = begin_[cell_[i] + 1]++;
             box_[place] = boxes[i];
+            rounded_.set(place, boxes[i]);
             id_[place] = static_cast<int>(i);
         }
     }
@@ -167,12 +170,13 @@ private:
     void search_part(int part, int parts) {
         Found& found = found_[part];
         found.count = 0;
+        found.near.resize(box_.size() + 64);  // each once, and what the registers write beyond
         for (std::size_t l = 0; l < level_.size(); ++l) {
             const Level& level = level_[l];
             const std::int64_t from = level.rows * part / parts, to = level.rows * (part + 1) / parts;
             for (std::int64_t y = from; y < to; ++y) among(level, y, found);
             for (std::size_t above = l + 1; above < level_.size(); ++above)
-                between(Range{begin_[level.row(0) + from * level.columns], begin_[level.row(0) + to * level.columns]},
+                between(begin_[level.row(0) + from * level.columns], begin_[level.row(0) + to * level.columns],
                         level_[above], found);
         }
     }
@@ -181,45 +185,55 @@ private:
     void among(const Level& level, std::int64_t y, Found& found) {
         for (std::int64_t x = 0; x < level.columns; ++x) {
             const std::int64_t cell = level.row(y) + x;
-            for (std::int64_t k = begin_[cell]; k < begin_[cell + 1]; ++k) {
-                meet(k, Range{k + 1, begin_[cell + 1]}, found);
-                meet_row(k, level, y, x + 1, 1, found);
-                meet_row(k, level, y + 1, x - 1, 3, found);
+            const bool last = x + 1 == level.columns;
+            for (int k = begin_[cell]; k < begin_[cell + 1]; ++k) {
+                look(k, k + 1, begin_[cell + (last ? 1 : 2)], found);
+                if (last) look_in_row(k, level, y, 0, 1, found);
+                look_in_row(k, level, y + 1, x - 1, 3, found);
+                meet(k, found);
             }
         }
     }
 
-    /// Pairs of smaller boxes with those of a level above, whose lower left corners lie less than a cell before them.
-    void between(Range smaller, const Level& level, Found& found) {
-        for (std::int64_t k = smaller.from; k < smaller.to; ++k) {
+    /// Pairs of smaller boxes at the places [from, to) with those of a level above, whose lower left corners lie less than a
+    /// cell before them.
+    void between(int from, int to, const Level& level, Found& found) {
+        for (int k = from; k < to; ++k) {
             const Box& box = box_[k];
             const std::int64_t x = level.cell(box.xmin) - 1, count = level.cell(box.xmax) - x + 1;
             for (std::int64_t y = level.cell(box.ymin) - 1, last = level.cell(box.ymax); y <= last; ++y)
-                meet_row(k, level, y, x, count, found);
+                look_in_row(k, level, y, x, count, found);
+            meet(k, found);
         }
     }
 
-    void meet_row(std::int64_t k, const Level& level, std::int64_t y, std::int64_t x, std::int64_t count, Found& found) {
+    void look_in_row(int k, const Level& level, std::int64_t y, std::int64_t x, std::int64_t count, Found& found) {
         const std::int64_t row = level.row(y), column = level.column(x);
         const std::int64_t until_wrap = std::min(count, level.columns - column);
-        meet(k, {begin_[row + column], begin_[row + column + until_wrap]}, found);
-        if (until_wrap < count) meet(k, {begin_[row], begin_[row + count - until_wrap]}, found);
+        look(k, begin_[row + column], begin_[row + column + until_wrap], found);
+        if (until_wrap < count) look(k, begin_[row], begin_[row + count - until_wrap], found);
     }
 
-    /// Which of the boxes near overlap is as good as a coin toss: no branch asks for it.
-    void meet(std::int64_t k, Range others, Found& found) {
-        if (found.count + others.to - others.from > std::ssize(found.pairs))
-            found.pairs.resize(2 * found.pairs.size() + (others.to - others.from));
+    void look(int k, int from, int to, Found& found) {
+        found.near_count += find_near_(rounded_, k, from, to, found.near.data() + found.near_count);
+    }
+
+    /// Takes those seen near that overlap. A branch would often be guessed wrong.
+    void meet(int k, Found& found) {
+        if (found.count + found.near_count > std::ssize(found.pairs))
+            found.pairs.resize(2 * (found.pairs.size() + found.near_count));
         const Box mine = box_[k];
         const int id = id_[k];
         Pair* next = found.pairs.data() + found.count;
-        for (std::int64_t m = others.from; m < others.to; ++m) {
-            const Box& other = box_[m];
-            *next = {std::min(id, id_[m]), std::max(id, id_[m])};
+        for (int i = 0; i < found.near_count; ++i) {
+            const int place = found.near[i];
+            const Box& other = box_[place];
+            *next = {std::min(id, id_[place]), std::max(id, id_[place])};
             next += (mine.xmin <= other.xmax) & (other.xmin <= mine.xmax) & (mine.ymin <= other.ymax) &
                     (other.ymin <= mine.ymax);
         }
         found.count = next - found.pairs.data();
+        found.near_count = 0;
     }
 
     /// Boxes that reach beyond all cells are compared with every other.
@@ -230,12 +244,14 @@ private:
                     pairs_.push_back({std::min(g, i), std::max(g, i)});
     }
 
+    const FindNear find_near_ = near_kernel(best_vector_unit());
     std::vector<Level> level_;
-    std::vector<int> level_of_;        // [number of boxes], or absent, or giant
-    std::vector<std::int64_t> cell_;   // [number of boxes]
-    std::vector<std::int64_t> begin_;  // boxes of cell c are at the places [begin_[c], begin_[c + 1])
-    std::vector<Box> box_;             // [number of boxes in cells], cell by cell
-    std::vector<int> id_;              // of the same boxes
+    std::vector<int> level_of_;       // [number of boxes], or absent, or giant
+    std::vector<std::int64_t> cell_;  // [number of boxes]
+    std::vector<int> begin_;          // boxes of cell c are at the places [begin_[c], begin_[c + 1])
+    std::vector<Box> box_;            // [number of boxes in cells], cell by cell
+    RoundedBoxes rounded_;            // the same
+    std::vector<int> id_;             // of the same boxes
     std::vector<int> giants_;
     std::vector<Found> found_;  // by each thread
     std::vector<Pair> pairs_;

@@ -54,41 +54,46 @@ private:
             }
 #pragma omp for schedule(static)
             for (int axis = 0; axis < 2; ++axis)
-                if (!lost && !join(axis, chunks)) lost = true;
+                if (!lost && !join(boxes, axis, chunks)) lost = true;
 #pragma omp for schedule(static)
             for (int part = 0; part < threads; ++part)
-                if (!lost) update_part(boxes, part, threads);
+                if (!lost) update_part(boxes.size(), part, threads);
         }
         if (!lost)
             for (const Crossings& met : met_) exchanges_ += met.exchanges;
         return !lost;
     }
 
-    static std::size_t place(const EndOrder& list, int chunk, int chunks) { return list.size() * chunk / chunks; }
+    static int place(const EndOrder& list, int chunk, int chunks) {
+        return static_cast<int>(std::int64_t{list.size()} * chunk / chunks);
+    }
 
     /// Puts the chunks of a list in order among each other. What is worth it is asked of all chunks together, so that the
     /// answer is the same for any number of them.
-    bool join(int axis, int chunks) {
+    bool join(std::span<const Box> boxes, int axis, int chunks) {
         EndOrder& list = list_[axis];
         Crossings& met = met_[2 * chunks + axis];
         for (int chunk = 1; chunk < chunks; ++chunk)
-            if (!list.join(place(list, chunk, chunks), place(list, chunk + 1, chunks), met)) return false;
-        std::int64_t exchanges = met.exchanges, pairs = std::ssize(met.pairs);
+            if (!list.join(boxes, place(list, chunk, chunks), place(list, chunk + 1, chunks), met)) return false;
+        std::int64_t exchanges = met.exchanges, crossings = met.crossings;
         for (int chunk = 0; chunk < chunks; ++chunk) {
             exchanges += met_[axis * chunks + chunk].exchanges;
-            pairs += std::ssize(met_[axis * chunks + chunk].pairs);
+            crossings += met_[axis * chunks + chunk].crossings;
         }
-        return list.worth_it(exchanges, pairs);
+        return list.worth_it(exchanges, crossings);
     }
 
-    /// Looks at all pairs that were met and whose first box is in this part of all boxes. An overlap begins or ends along
-    /// an axis only when a lower end passes an upper one: no change is missed.
-    void update_part(std::span<const Box> boxes, int part, int parts) {
-        const int from = static_cast<int>(boxes.size() * part / parts);
-        const int to = static_cast<int>(boxes.size() * (part + 1) / parts);
-        for (const Crossings& met : met_)
-            for (const Pair& pair : met.pairs)
-                if (from <= pair.a && pair.a < to) pairs_.put(pair, boxes[pair.a].overlaps(boxes[pair.b]));
+    /// Takes in or out all pairs that were met and whose first box is in this part of all boxes. Those taken in overlap
+    /// now, those taken out do not, so neither their order nor a second time changes anything.
+    void update_part(std::size_t boxes, int part, int parts) {
+        const int from = static_cast<int>(boxes * part / parts), to = static_cast<int>(boxes * (part + 1) / parts);
+        const auto mine = [&](const Pair& pair) { return from <= pair.a && pair.a < to; };
+        for (const Crossings& met : met_) {
+            for (const Pair& pair : met.begun)
+                if (mine(pair)) pairs_.insert(pair);
+            for (const Pair& pair : met.ended)
+                if (mine(pair)) pairs_.erase(pair);
+        }
     }
 
     void rebuild(std::span<const Box> boxes) {
