@@ -7,6 +7,8 @@
 // Part. Mech. 1 (2014) 357-372.
 #pragma once
 
+#include "core/types.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -24,6 +26,21 @@ struct CoarseBox {
         return (xmin <= o.xmax) & (o.xmin <= xmax) & (ymin <= o.ymax) & (o.ymin <= ymax);
     }
 };
+
+/// The box as seen, larger by a margin, m, on all sides.
+CoarseBox coarse(const Box& b, double margin);
+
+/// m: how far every bound of a box may change before it leaves its coarse box; negative: it has.
+inline double slack(const CoarseBox& outer, const Box& b) {
+    return std::min(std::min(b.xmin - outer.xmin, outer.xmax - b.xmax), std::min(b.ymin - outer.ymin, outer.ymax - b.ymax));
+}
+
+/// m: margin of the coarse box of a box that moves `speed` m per step, at least `least` of a box. Fast boxes are
+/// listed anew every some thirty steps, slow ones hardly ever. Margins differ a little from box to box, so that boxes that
+/// move together do not all come at the same step.
+double wise_margin(int i, const Box& b, double speed, double typical, double least);
+
+float rounded_down(double x);
 
 class CellGrid {
 public:

@@ -1,5 +1,7 @@
 #include "contact/region_kernels.hpp"
 
+#include "contact/threads.hpp"
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -118,9 +120,17 @@ const Kernels best = plain;
 
 }  // namespace
 
-void find_escaped(std::span<const Box> boxes, const Vec2& centre, const Regions& regions, int begin, int end,
-                  std::vector<int>& escaped) {
-    best.find_escaped(boxes, centre, regions, begin, end, escaped);
+void find_escaped(std::span<const Box> boxes, const Vec2& centre, const Regions& regions, std::vector<int>& escaped) {
+    const int n = static_cast<int>(boxes.size()), threads = n < 20000 ? 1 : threads_allowed();
+    escaped.clear();
+    if (threads == 1) return best.find_escaped(boxes, centre, regions, 0, n, escaped);
+    std::vector<std::vector<int>> found(threads);
+#pragma omp parallel for schedule(static) num_threads(threads)
+    for (int t = 0; t < threads; ++t) {
+        const auto at = [&](int k) { return static_cast<int>(static_cast<std::int64_t>(n) * k / threads); };
+        best.find_escaped(boxes, centre, regions, at(t), at(t + 1), found[t]);
+    }
+    for (const auto& each : found) escaped.insert(escaped.end(), each.begin(), each.end());
 }
 
 void compare_watched(std::span<const Box> boxes, WatchedPairs& pairs) { best.compare_watched(boxes, pairs); }

@@ -14,10 +14,8 @@ struct Regions {
     std::vector<float> radius;  // [n] m; negative: never inside
 };
 
-/// Appends to `escaped`, in order, every box of [begin, end) of which a bound is further than the radius from that of its
-/// reference, or is not a number.
-void find_escaped(std::span<const Box> boxes, const Vec2& centre, const Regions& regions, int begin, int end,
-                  std::vector<int>& escaped);
+/// Every box of which a bound is further than the radius from that of its reference, or is not a number; in order.
+void find_escaped(std::span<const Box> boxes, const Vec2& centre, const Regions& regions, std::vector<int>& escaped);
 
 /// Pairs of which all bounds are compared.
 struct WatchedPairs {

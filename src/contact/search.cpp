@@ -16,6 +16,8 @@ struct Method {
 
 constexpr std::array methods = {
     Method{"auto", make_auto_search},
+    Method{"safe-regions", make_safe_regions_search},
+    Method{"verlet", make_verlet_search},
     Method{"isu", make_isu_search},
     Method{"isu-separated", make_isu_separated_search},
     Method{"isu-parallel", make_isu_parallel_search},

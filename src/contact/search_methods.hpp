@@ -32,7 +32,13 @@ std::unique_ptr<PairSearch> make_isu_parallel_search();
 /// Hierarchical grid: cells for every size of boxes, filled anew at each step. O(N).
 std::unique_ptr<PairSearch> make_grid_search();
 
-/// Safe regions: one test per box, and a look at those only whose pairs can have changed. See search_auto.cpp.
+/// Safe regions or Verlet lists, whichever the motion asks for: search_auto.cpp.
 std::unique_ptr<PairSearch> make_auto_search();
+
+/// One test per box, and a look at those only whose pairs can have changed: safe_regions.cpp.
+std::unique_ptr<PairSearch> make_safe_regions_search();
+
+/// Pairs of larger boxes, compared at every step and repaired box by box: verlet_lists.cpp.
+std::unique_ptr<PairSearch> make_verlet_search();
 
 }  // namespace talus
