@@ -61,12 +61,14 @@ void drive(const Model& model, double t, Motion& motion) {
     }
 }
 
-void place(const Model& model, const Motion& motion, bool all, Placed& placed) {
+bool place(const Model& model, const Motion& motion, double skin, Placed& placed) {
     const int nb = model.blocks.size();
+    const bool all = placed.boxed.empty();
     placed.corner.resize(model.corners.arm.size());
     placed.block.resize(nb);
+    bool left = all;
     constexpr int few = 64;
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) reduction(|| : left)
     for (int begin = 0; begin < nb; begin += few) {
         const int n = std::min(few, nb - begin);
         double c[few], s[few];
@@ -75,6 +77,10 @@ void place(const Model& model, const Motion& motion, bool all, Placed& placed) {
             c[i] = now.c;
             s[i] = now.s;
         }
+        bool inside = true;
+        for (int i = 0; i < n && !all; ++i)
+            inside &= placed.boxed[begin + i].moved(motion.position[begin + i], motion.angle[begin + i]) <= skin;
+        left = left || !inside;
         for (int i = 0; i < n; ++i) {
             const int b = begin + i;
             placed.block[b] = {motion.position[b], motion.velocity[b], motion.spin[b]};
@@ -88,6 +94,7 @@ void place(const Model& model, const Motion& motion, bool all, Placed& placed) {
             }
         }
     }
+    return left;
 }
 
 double release_share(const Model& model, double stage_time) {
