@@ -93,9 +93,11 @@ Simulation::Simulation(const Scenario& scenario, Scene scene, State saved) : Sim
 void Simulation::step() {
     const double dt = time_step();
     watch_.lap();
-    load_before_ = state_.load;
-    damping_before_ = state_.damping;
-    kick(model_, state_.load, state_.motion, dt / 2);  // v(t) -> v(t + dt/2)
+    load_before_.resize(state_.load.size());  // what is swapped into the state is overwritten, all of it
+    damping_before_.resize(state_.damping.size());
+    load_before_.swap(state_.load);
+    damping_before_.swap(state_.damping);
+    kick(model_, load_before_, state_.motion, dt / 2);  // v(t) -> v(t + dt/2)
     drive(model_, state_.stage_time + dt / 2, state_.motion);
     drift(state_.motion, dt);  // x(t) -> x(t + dt)
     state_.time += dt;
