@@ -106,6 +106,8 @@ void print_timing(const Simulation& simulation, double wall_time) {
     for (std::size_t i = 0; i < seconds.size(); ++i)
         std::printf(" %s %.1f %%%s", part_names[i], 100.0 * seconds[i] / std::max(all, 1e-9),
                     i + 1 < seconds.size() ? "," : "\n");
+    if (!simulation.search_choice().empty())
+        std::printf("  search         %s: %s\n", simulation.scenario().run.search.c_str(), simulation.search_choice().c_str());
     const MemoryUse memory = memory_use();
     std::printf("  memory         %.0f MB at the end, %.0f MB at most (cutting and frames)\n", memory.now / 1e6,
                 memory.peak / 1e6);

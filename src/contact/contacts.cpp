@@ -4,16 +4,18 @@
 #include "contact/face_path.hpp"
 #include "contact/idle.hpp"
 #include "contact/joint_memory.hpp"
+#include "model/part_boxes.hpp"
 #include "model/supports.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 namespace talus {
 namespace {
 
-bool key_less(const Contact& c, const Pair& p) { return c.part_a < p.a || (c.part_a == p.a && c.part_b < p.b); }
+constexpr int blocks_per_chunk = 256;  // fixed, so that sums do not depend on the number of threads
 
 // Pairs that cannot move against each other are not looked at: parts of one block, two held blocks, removed ones.
 class Movable {
@@ -30,38 +32,124 @@ private:
     const std::vector<std::uint8_t> fixed_;
 };
 
-void make_incidence(const Model& model, const Contacts& contacts, ContactIndex& index) {
-    const int nb = model.blocks.size(), n = static_cast<int>(contacts.list.size());
-    index.first.assign(nb + 1, 0);
-    index.entry.resize(2 * static_cast<std::size_t>(n));
-    for (const Contact& c : contacts.list) {
-        ++index.first[model.parts.block[c.part_a] + 1];
-        ++index.first[model.parts.block[c.part_b] + 1];
-    }
-    for (int b = 0; b < nb; ++b) index.first[b + 1] += index.first[b];
-    std::vector<int> place(index.first.begin(), index.first.end() - 1);
-    for (int i = 0; i < n; ++i) {
-        index.entry[place[model.parts.block[contacts.list[i].part_a]]++] = 2 * i;
-        index.entry[place[model.parts.block[contacts.list[i].part_b]]++] = 2 * i + 1;
-    }
-}
+// What the new list will hold at one place.
+struct Entry {
+    int from;  // slot in the old list, -1 = none
+    PartId part_a, part_b;
+};
 
-// Idle places in `idle`, the others are alive.
-void make_chunks(const Model& model, const Contacts& contacts, std::span<const Idle> idle, ContactIndex& index) {
-    constexpr int blocks_per_chunk = 256;  // fixed, so that sums do not depend on the number of threads
-    const int n = static_cast<int>(contacts.list.size());
-    index.chunks.assign((model.blocks.size() + blocks_per_chunk - 1) / blocks_per_chunk, {n, n, {}, {}});
-    auto next_idle = idle.begin();
-    for (int i = 0; i < n; ++i) {
-        const int k = model.parts.block[contacts.list[i].part_a] / blocks_per_chunk;
-        ContactIndex::Chunk& chunk = index.chunks[k];
-        chunk.begin = std::min(chunk.begin, i);
-        chunk.end = i + 1;
-        if (next_idle != idle.end() && next_idle->slot == i)
-            chunk.idle.push_back(*next_idle++);
-        else
-            chunk.alive.push_back(i);
+// The new list of one chunk of blocks, before it is known where it begins: slots count from 0.
+class ChunkPlan {
+public:
+    std::vector<Entry> entries;
+    std::vector<Idle> idle;
+
+    void keep(int from, const Contact& c) { entries.push_back({from, c.part_a, c.part_b}); }
+    void keep_idle(int from, const Pair& pair, const Idle& known) {
+        idle.push_back(known);
+        idle.back().slot = static_cast<int>(entries.size());
+        entries.push_back({from, pair.a, pair.b});
     }
+};
+
+class Refresh {
+public:
+    Refresh(const Model& model, const Placed& placed, std::span<const Pair> pairs, std::span<const std::uint8_t> reboxed,
+            const State& state, const ContactIndex& index)
+        : model_(model),
+          placed_(placed),
+          pairs_(pairs),
+          reboxed_(reboxed),
+          old_(state.contacts.list),
+          index_(index),
+          movable_(model, state) {}
+
+    ChunkPlan plan(int chunk) const {
+        const BlockId begin = chunk * blocks_per_chunk, end = std::min(begin + blocks_per_chunk, model_.blocks.size());
+        const PartId first = model_.blocks.first_part[begin], last = model_.blocks.first_part[end];
+        const auto pair = std::ranges::lower_bound(pairs_, first, {}, &Pair::a);
+        const auto pairs_end = std::ranges::lower_bound(pair, pairs_.end(), last, {}, &Pair::a);
+        int i = slot_of(first);
+        const int slots_end = slot_of(last);
+        ChunkPlan plan;
+        std::span<const Idle> known;
+        if (!index_.chunks.empty()) known = index_.chunks[chunk].idle;
+        const auto keep_alive = [&](int slot) {
+            const Contact& c = old_[slot];
+            if (c.alive && movable_(c.part_a, c.part_b)) plan.keep(slot, c);
+        };
+        for (const Pair& p : std::ranges::subrange(pair, pairs_end)) {
+            while (i < slots_end && key(old_[i]) < p) keep_alive(i++);
+            const int from = i < slots_end && key(old_[i]) == p ? i++ : -1;
+            if (from >= 0 && old_[from].alive)
+                keep_alive(from);
+            else if (reboxed_[model_.parts.block[p.a]] || reboxed_[model_.parts.block[p.b]])
+                look_at(from, p, plan);
+            else if (from >= 0)
+                plan.keep_idle(from, p, idle_of(from, known));
+        }
+        while (i < slots_end) keep_alive(i++);
+        return plan;
+    }
+
+private:
+    static Pair key(const Contact& c) { return {c.part_a, c.part_b}; }
+    int slot_of(PartId part) const {
+        return static_cast<int>(std::ranges::lower_bound(old_, part, {}, &Contact::part_a) - old_.begin());
+    }
+
+    static Idle idle_of(int slot, std::span<const Idle>& known) {
+        while (!known.empty() && known.front().slot < slot) known = known.subspan(1);
+        return !known.empty() && known.front().slot == slot ? known.front() : Idle{};
+    }
+
+    void look_at(int from, const Pair& p, ChunkPlan& plan) const {
+        if (!movable_(p.a, p.b)) return;
+        const PlacedPart a(model_, placed_, p.a), b(model_, placed_, p.b);
+        const Vec2 d = placed_.block[model_.parts.block[p.b]].position - placed_.block[model_.parts.block[p.a]].position;
+        const Separation separate = separation(a, b, d.x(), d.y());
+        Apart apart;
+        if (separate.distance >= -touch_depth(model_, p.a, p.b))
+            apart = keep_apart(model_, placed_, p.a, p.b, separate, (1.0 + kept_share) * index_.skin);
+        if (!apart.never) plan.keep_idle(from, p, apart.idle);
+    }
+
+    const Model& model_;
+    const Placed& placed_;
+    std::span<const Pair> pairs_;
+    std::span<const std::uint8_t> reboxed_;
+    const std::vector<Contact>& old_;
+    const ContactIndex& index_;
+    const Movable movable_;
+};
+
+// Where the contacts of each block are. Threads fill the places of a block in any order; sorting them puts that right.
+void make_incidence(const Model& model, const std::vector<Contact>& list, ContactIndex& index) {
+    const int nb = model.blocks.size(), n = static_cast<int>(list.size());
+    index.first_a.assign(nb + 1, 0);
+    index.first_b.assign(nb + 1, 0);
+    index.slot_b.resize(n);
+    const auto block_b = [&](int i) { return model.parts.block[list[i].part_b]; };
+#pragma omp parallel for schedule(static)
+    for (int i = 0; i < n; ++i) {
+#pragma omp atomic
+        ++index.first_a[model.parts.block[list[i].part_a] + 1];
+#pragma omp atomic
+        ++index.first_b[block_b(i) + 1];
+    }
+    std::partial_sum(index.first_a.begin(), index.first_a.end(), index.first_a.begin());
+    std::partial_sum(index.first_b.begin(), index.first_b.end(), index.first_b.begin());
+    std::vector<int> next(index.first_b.begin(), index.first_b.end() - 1);
+#pragma omp parallel for schedule(static)
+    for (int i = 0; i < n; ++i) {
+        int at;
+#pragma omp atomic capture
+        at = next[block_b(i)]++;
+        index.slot_b[at] = i;
+    }
+#pragma omp parallel for schedule(static)
+    for (int b = 0; b < nb; ++b)
+        std::sort(index.slot_b.begin() + index.first_b[b], index.slot_b.begin() + index.first_b[b + 1]);
 }
 
 }  // namespace
@@ -72,47 +160,42 @@ double memory_reach(const Model& model, PartId a, PartId b) {
 
 double touch_depth(const Model& model, PartId a, PartId b) { return 1e-10 * memory_reach(model, a, b); }
 
-void refresh_contacts(const Model& model, const Placed& placed, std::span<const Pair> pairs, double skin, State& state,
-                      ContactIndex& index) {
-    const Contacts& old = state.contacts;
-    const Movable movable(model, state);
-    std::vector<Contact> list;
-    std::vector<Reaction> reaction;
-    std::vector<Idle> idle;
+void refresh_contacts(const Model& model, const Placed& placed, std::span<const Pair> pairs,
+                      std::span<const std::uint8_t> reboxed, double skin, State& state, ContactIndex& index) {
     index.skin = skin;
-    std::size_t i = 0;
-    const auto keep = [&](std::size_t k) {
-        const Contact& c = old.list[k];
-        if (!c.alive || !movable(c.part_a, c.part_b)) return;
-        list.push_back(c);
-        reaction.push_back(old.reaction[k]);
-    };
-    for (const Pair& pair : pairs) {
-        while (i < old.list.size() && key_less(old.list[i], pair)) keep(i++);
-        if (i < old.list.size() && old.list[i].part_a == pair.a && old.list[i].part_b == pair.b && old.list[i].alive) {
-            keep(i++);
-            continue;
-        }
-        if (!movable(pair.a, pair.b)) continue;
-        const PlacedPart a(model, placed, pair.a), b(model, placed, pair.b);
-        const Vec2 d = placed.block[model.parts.block[pair.b]].position - placed.block[model.parts.block[pair.a]].position;
-        const Separation separate = separation(a, b, d.x(), d.y());
-        Apart apart;
-        if (separate.distance >= -touch_depth(model, pair.a, pair.b))
-            apart = keep_apart(model, placed, pair.a, pair.b, separate, skin);
-        if (apart.never) continue;
-        idle.push_back(apart.idle);
-        idle.back().slot = static_cast<int>(list.size());
-        list.push_back(Contact{pair.a, pair.b, model.joint_between(pair.a, pair.b)});
-        reaction.emplace_back();
+    const int chunks = (model.blocks.size() + blocks_per_chunk - 1) / blocks_per_chunk;
+    const Refresh refresh(model, placed, pairs, reboxed, state, index);
+    std::vector<ChunkPlan> plans(chunks);
+#pragma omp parallel for schedule(dynamic)
+    for (int k = 0; k < chunks; ++k) plans[k] = refresh.plan(k);
+
+    index.chunks.resize(chunks);
+    int n = 0;
+    for (int k = 0; k < chunks; ++k) {
+        index.chunks[k].begin = n;
+        index.chunks[k].end = n += static_cast<int>(plans[k].entries.size());
     }
-    while (i < old.list.size()) keep(i++);
-    list.shrink_to_fit();
-    reaction.shrink_to_fit();
+    std::vector<Contact> list(n);
+    std::vector<Reaction> reaction(n);
+#pragma omp parallel for schedule(dynamic)
+    for (int k = 0; k < chunks; ++k) {
+        ContactIndex::Chunk& chunk = index.chunks[k];
+        chunk.sorted = false;
+        chunk.idle = std::move(plans[k].idle);
+        for (Idle& idle : chunk.idle) idle.slot += chunk.begin;
+        for (int i = chunk.begin; i < chunk.end; ++i) {
+            const Entry& e = plans[k].entries[i - chunk.begin];
+            if (e.from >= 0) {
+                list[i] = state.contacts.list[e.from];
+                reaction[i] = state.contacts.reaction[e.from];
+            } else {
+                list[i] = {.part_a = e.part_a, .part_b = e.part_b, .joint = model.joint_between(e.part_a, e.part_b)};
+            }
+        }
+    }
     state.contacts.list = std::move(list);
     state.contacts.reaction = std::move(reaction);
-    make_incidence(model, state.contacts, index);
-    make_chunks(model, state.contacts, idle, index);
+    make_incidence(model, state.contacts.list, index);
 }
 
 void sum_contacts(const Model& model, const Contacts& contacts, const ContactIndex& index, std::span<Force> load) {
@@ -120,13 +203,17 @@ void sum_contacts(const Model& model, const Contacts& contacts, const ContactInd
 #pragma omp parallel for schedule(static)
     for (int b = 0; b < nb; ++b) {
         double fx = 0.0, fy = 0.0, torque = 0.0;
-        for (int e = index.first[b]; e < index.first[b + 1]; ++e) {
-            const int i = index.entry[e] >> 1;
+        for (int e = index.first_b[b]; e < index.first_b[b + 1]; ++e) {
+            const Reaction& r = contacts.reaction[index.slot_b[e]];
+            fx += r.force.x();
+            fy += r.force.y();
+            torque += r.torque_b;
+        }
+        for (int i = index.first_a[b]; i < index.first_a[b + 1]; ++i) {
             const Reaction& r = contacts.reaction[i];
-            const bool on_b = index.entry[e] & 1;
-            fx += on_b ? r.force.x() : -r.force.x();
-            fy += on_b ? r.force.y() : -r.force.y();
-            torque += on_b ? r.torque_b : r.torque_a;
+            fx -= r.force.x();
+            fy -= r.force.y();
+            torque += r.torque_a;
         }
         load[b].force += Vec2(fx, fy);
         load[b].torque += torque;

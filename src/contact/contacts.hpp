@@ -29,17 +29,28 @@ struct Idle {
     double touch_depth = 0.0;  // m, see touch_depth()
 };
 
+/// A plain face, alive: where the numbers stand that go into a FaceBatch, so that no chain of look-ups leads to them.
+struct FaceSlot {
+    int slot;  // in the list
+    BlockId block_a, block_b;
+    int a0, a1, b0, b1;  // corners at the ends of the two edges; those of a and of b start at a0 and at b1
+};
+
 /// Scratch: follows from the list.
 struct ContactIndex {
     struct Chunk {  // contacts [begin, end) of the list: those whose block a is one of a few neighbouring numbers
-        int begin, end;
-        std::vector<int> alive;  // slots, ascending
-        std::vector<Idle> idle;  // all others, ascending
+        int begin = 0, end = 0;
+        bool sorted = false;          // whether the three kinds below are up to date; all ascending
+        std::vector<FaceSlot> faces;  // alive, without intact bonds: computed many at a time
+        std::vector<int> others;      // alive: corners and bonds
+        std::vector<Idle> idle;       // not alive; also before they are sorted, if nothing has begun or ended since
     };
     std::vector<Chunk> chunks;
-    std::vector<int> first;  // [nb+1] entries of block b: [first[b], first[b+1]) of `entry`
-    std::vector<int> entry;  // 2 x contact + side (0 = block is a, 1 = block is b), in key order
-    double skin = 0.0;       // m, how far every point of a block stays from where it was at the refresh, per axis
+    // Contacts in which block b is a: [first_a[b], first_a[b+1]) of the list. In which it is b: [first_b[b], first_b[b+1])
+    // of `slot_b`, ascending; in the order of keys these come first.
+    std::vector<int> first_a, first_b;  // [nb+1]
+    std::vector<int> slot_b;            // [n]
+    double skin = 0.0;                  // m, how far every point of a block stays from where it got its boxes, per axis
 };
 
 /// m: how far apart two parts may be before their contact forgets.
@@ -49,11 +60,12 @@ double memory_reach(const Model& model, PartId a, PartId b);
 /// of such a corner (kn depth^2, 1e-14 N) is nothing, but half of all pairs would go through the general law.
 double touch_depth(const Model& model, PartId a, PartId b);
 
-/// Makes the list anew: the given pairs of parts (sorted, as a search hands them over) and every contact that is alive.
-/// Left out are pairs within one block, between blocks that cannot move, with removed blocks, and those too far apart to
-/// touch before a block leaves its skin.
-void refresh_contacts(const Model& model, const Placed& placed, std::span<const Pair> pairs, double skin, State& state,
-                      ContactIndex& index);
+/// Renews the list: the given pairs of parts (sorted, as a search hands them over) and every contact that is alive. Left out
+/// are pairs within one block, between blocks that cannot move, with removed blocks, and those too far apart to touch before
+/// a block leaves its boxes. Only pairs with a block that was `reboxed` [nb] are looked at; what is known of others holds
+/// until then. At first every block must be.
+void refresh_contacts(const Model& model, const Placed& placed, std::span<const Pair> pairs,
+                      std::span<const std::uint8_t> reboxed, double skin, State& state, ContactIndex& index);
 
 /// Geometry and law of every contact in the list, for velocities of the half step before `now` and a step dt (0: forces
 /// only). Adds what slip and dashpots dissipate to the ledger.

@@ -41,22 +41,20 @@ public:
     void operator()(ContactIndex::Chunk& chunk, Work& work) {
         work_ = &work;
         changed_ = false;
+        if (!chunk.sorted) sort(chunk);
         for (Idle& idle : chunk.idle) {
             if (idle.corner >= 0 && still_apart(model_, placed_, idle)) continue;
             if (idle.edge >= 0 && edge_separates(contacts_.list[idle.slot], idle.edge)) continue;
             evaluate(idle.slot);
             if (!contacts_.list[idle.slot].alive) look_for_edge(idle);
         }
-        for (std::size_t j = 0; j < chunk.alive.size(); ++j) {
-            const int i = chunk.alive[j];
-            if (j + ahead < chunk.alive.size()) fetch(chunk.alive[j + ahead]);
-            if (plain_face(contacts_.list[i]))
-                collect(i);
-            else
-                evaluate(i);
+        for (std::size_t j = 0; j < chunk.faces.size(); ++j) {
+            if (j + ahead < chunk.faces.size()) fetch(chunk.faces[j + ahead].slot);
+            collect(chunk.faces[j]);
         }
         flush();
-        if (changed_) sort(chunk);
+        for (const int i : chunk.others) evaluate(i);
+        chunk.sorted = !changed_;
     }
 
 private:
@@ -111,24 +109,29 @@ private:
         idle = keep_apart(model_, placed_, c.part_a, c.part_b, apart, 2.0 * index_.skin).idle;
         idle.slot = slot;
     }
-    // After contacts have begun or ended.
+    // Which contact is of which kind: after a refresh, and after contacts have begun, ended or changed their edges.
     void sort(ContactIndex::Chunk& chunk) const {
         const std::vector<Idle> known = std::exchange(chunk.idle, {});
         auto next = known.begin();
-        chunk.alive.clear();
+        chunk.faces.clear();
+        chunk.others.clear();
         for (int i = chunk.begin; i < chunk.end; ++i) {
+            const Contact& c = contacts_.list[i];
             while (next != known.end() && next->slot < i) ++next;
-            if (contacts_.list[i].alive)
-                chunk.alive.push_back(i);
-            else
+            if (!c.alive)
                 chunk.idle.push_back(next != known.end() && next->slot == i ? *next : Idle{.slot = i});
+            else if (plain_face(c))
+                chunk.faces.push_back(face_slot(i));
+            else
+                chunk.others.push_back(i);
         }
+        chunk.sorted = true;
     }
 
     // ---- faces without intact bonds: many at a time
 
     bool plain_face(const Contact& c) const {
-        if (!c.alive || c.edge_a < 0 || c.edge_b < 0) return false;
+        if (c.edge_a < 0 || c.edge_b < 0) return false;
         return c.face >= 0 ? !bonded(model_.faces[c.face]) : model_.face_path;
     }
     bool bonded(const JointFace& face) const {  // still
@@ -136,26 +139,43 @@ private:
         const auto first = contacts_.broken.begin() + face.first_cell;
         return std::find(first, first + model_.joints[face.joint].cells, 0) != first + model_.joints[face.joint].cells;
     }
-
-    void collect(int i) {
+    FaceSlot face_slot(int i) const {
         const Contact& c = contacts_.list[i];
-        const Couple s = couple(c);
-        const FaceLines f = face_lines(s.a, s.b, s.dx, s.dy, c.edge_a - s.a.first, c.edge_b - s.b.first);
-        const Approach v = approach(s);
+        const Parts& parts = model_.parts;
+        const auto next = [&](PartId p, int k) {
+            return k + 1 == parts.first_corner[p + 1] ? parts.first_corner[p] : k + 1;
+        };
+        return {i,        parts.block[c.part_a],    parts.block[c.part_b],
+                c.edge_a, next(c.part_a, c.edge_a), next(c.part_b, c.edge_b),
+                c.edge_b};
+    }
+
+    void collect(const FaceSlot& f) {
+        const Contact& c = contacts_.list[f.slot];
+        const PlacedBlock &a = placed_.block[f.block_a], &b = placed_.block[f.block_b];
+        const PlacedCorner &a0 = placed_.corner[f.a0], &b1 = placed_.corner[f.b1];
+        const Vec2 &a1 = placed_.corner[f.a1].arm, &b0 = placed_.corner[f.b0].arm;
         FaceBatch& q = batch_;
         const int k = q.count++;
-        q.slot[k] = i;
-        q.a0x[k] = f.a0x, q.a0y[k] = f.a0y, q.a1x[k] = f.a1x, q.a1y[k] = f.a1y, q.nax[k] = f.nax, q.nay[k] = f.nay;
-        q.b0x[k] = f.b0x, q.b0y[k] = f.b0y, q.b1x[k] = f.b1x, q.b1y[k] = f.b1y, q.nbx[k] = f.nbx, q.nby[k] = f.nby;
-        q.dx[k] = s.dx, q.dy[k] = s.dy;
-        if (!convex_) q.a_lo[k] = f.a_lo, q.a_hi[k] = f.a_hi, q.b_lo[k] = f.b_lo, q.b_hi[k] = f.b_hi;
-        q.vax[k] = v.vax, q.vay[k] = v.vay, q.spin_a[k] = v.spin_a, q.vbx[k] = v.vbx, q.vby[k] = v.vby;
-        q.spin_b[k] = v.spin_b;
+        q.slot[k] = f.slot;
+        q.a0x[k] = a0.arm.x(), q.a0y[k] = a0.arm.y(), q.a1x[k] = a1.x(), q.a1y[k] = a1.y();
+        q.nax[k] = a0.normal.x(), q.nay[k] = a0.normal.y();
+        q.b0x[k] = b0.x(), q.b0y[k] = b0.y(), q.b1x[k] = b1.arm.x(), q.b1y[k] = b1.arm.y();
+        q.nbx[k] = b1.normal.x(), q.nby[k] = b1.normal.y();
+        q.dx[k] = b.position.x() - a.position.x(), q.dy[k] = b.position.y() - a.position.y();
+        if (!convex_) set_ends(k, couple(c), c.edge_a, c.edge_b);
+        q.vax[k] = a.velocity.x(), q.vay[k] = a.velocity.y(), q.spin_a[k] = a.spin;
+        q.vbx[k] = b.velocity.x(), q.vby[k] = b.velocity.y(), q.spin_b[k] = b.spin;
         if (c.joint != joint_of_column_[k]) set_joint(k, c.joint);
         q.force[k] = c.shear_force, q.energy[k] = c.shear_energy, q.slip[k] = c.slip, q.slip_sum[k] = c.slip_sum;
         q.dilation[k] = c.dilation, q.slipped[k] = c.slipped, q.nx[k] = c.normal.x(), q.ny[k] = c.normal.y();
         if (c.face >= 0 || q.remembers[k] != 0.0) set_memory(k, c.face);
         if (q.count == FaceBatch::size) flush();
+    }
+
+    void set_ends(int k, const Couple& s, int edge_a, int edge_b) {
+        const FaceLines f = face_lines(s.a, s.b, s.dx, s.dy, edge_a - s.a.first, edge_b - s.b.first);
+        batch_.a_lo[k] = f.a_lo, batch_.a_hi[k] = f.a_hi, batch_.b_lo[k] = f.b_lo, batch_.b_hi[k] = f.b_hi;
     }
 
     void set_joint(int k, int j) {
@@ -192,6 +212,7 @@ private:
             } else {  // turned away, or open here: other edges may touch
                 if (c.face >= 0) end_face(c, couple(c));
                 c.edge_a = c.edge_b = -1;
+                changed_ = true;
                 evaluate(i);
             }
         }
@@ -219,7 +240,9 @@ private:
         Contact& c = contacts_.list[i];
         const Couple s = couple(c);
         const Couple shifted = thickened(c, s);
+        const int edge_a = c.edge_a, edge_b = c.edge_b;
         Pressed pressed = press(c, shifted);
+        changed_ |= c.edge_a != edge_a || c.edge_b != edge_b;
         if (!pressed.loaded()) return unload(i, s);
         // The force acts at the true place.
         pressed.torque_b -= (s.dx - shifted.dx) * pressed.fy - (s.dy - shifted.dy) * pressed.fx;
@@ -268,6 +291,7 @@ private:
             if (break_cells(s.a, s.b, s.dx, s.dy, ea, eb, memory, joint.tension / joint.kn,
                             &contacts_.broken[face.first_cell]) > 0) {
                 work_->released += before - bond_energy(c, s);
+                changed_ = true;
                 contact = face_contact(s.a, s.b, s.dx, s.dy, ea, eb, &memory);
                 if (contact.pressed.bonded_length == 0.0) c.slipped = 1;  // all of it has broken: residual strength
             }
@@ -334,6 +358,7 @@ private:
     void break_bonds(const Contact& c, const Couple& s) {
         const JointFace& face = model_.faces[c.face];
         if (!face.bonded) return;
+        changed_ = true;
         const double before = bond_energy(c, s);
         for (int i = 0; i < model_.joints[face.joint].cells; ++i)
             if (!contacts_.broken[face.first_cell + i]) contacts_.broken[face.first_cell + i] = 2;
@@ -357,7 +382,7 @@ private:
     FaceBatch batch_{};
     int joint_of_column_[FaceBatch::size];
     Work* work_ = nullptr;
-    bool changed_ = false;  // a contact has begun or ended in this chunk
+    bool changed_ = false;  // a contact of this chunk has begun or ended, or is of another kind now
 };
 
 }  // namespace

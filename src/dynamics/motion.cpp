@@ -61,12 +61,17 @@ void drive(const Model& model, double t, Motion& motion) {
     }
 }
 
-void place(const Model& model, const Motion& motion, bool all, Placed& placed) {
+bool place(const Model& model, const Motion& motion, double skin, Placed& placed) {
     const int nb = model.blocks.size();
+    const bool all = placed.boxed.empty();
     placed.corner.resize(model.corners.arm.size());
     placed.block.resize(nb);
+    const Vec2 *arm = model.corners.arm.data(), *normal = model.corners.normal.data();
+    const int *first_part = model.blocks.first_part.data(), *first_corner = model.parts.first_corner.data();
+    PlacedCorner* corner = placed.corner.data();
+    bool left = all;
     constexpr int few = 64;
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) reduction(|| : left)
     for (int begin = 0; begin < nb; begin += few) {
         const int n = std::min(few, nb - begin);
         double c[few], s[few];
@@ -75,19 +80,23 @@ void place(const Model& model, const Motion& motion, bool all, Placed& placed) {
             c[i] = now.c;
             s[i] = now.s;
         }
+        bool inside = true;
         for (int i = 0; i < n; ++i) {
             const int b = begin + i;
-            placed.block[b] = {motion.position[b], motion.velocity[b], motion.spin[b]};
+            const Vec2 position = motion.position[b];
+            placed.block[b] = {position, motion.velocity[b], motion.spin[b]};
+            if (!all) inside &= placed.boxed[b].moved(position, motion.angle[b]) <= skin;
             if (!all && model.blocks.inv_inertia[b] == 0.0 && motion.spin[b] == 0.0) continue;
-            const int first = model.parts.first_corner[model.blocks.first_part[b]];
-            const int last = model.parts.first_corner[model.blocks.first_part[b + 1]];
-            for (int k = first; k < last; ++k) {
-                const Vec2 &p = model.corners.arm[k], &m = model.corners.normal[k];
-                placed.corner[k] = {{c[i] * p.x() - s[i] * p.y(), s[i] * p.x() + c[i] * p.y()},
-                                    {c[i] * m.x() - s[i] * m.y(), s[i] * m.x() + c[i] * m.y()}};
+            const double cosine = c[i], sine = s[i];
+            for (int k = first_corner[first_part[b]]; k < first_corner[first_part[b + 1]]; ++k) {
+                const Vec2 p = arm[k], m = normal[k];
+                corner[k] = {{cosine * p.x() - sine * p.y(), sine * p.x() + cosine * p.y()},
+                             {cosine * m.x() - sine * m.y(), sine * m.x() + cosine * m.y()}};
             }
         }
+        left = left || !inside;
     }
+    return left;
 }
 
 double release_share(const Model& model, double stage_time) {

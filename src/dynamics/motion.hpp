@@ -18,8 +18,9 @@ void drift(Motion& motion, double dt);
 /// Sets the velocities that are prescribed at time t.
 void drive(const Model& model, double t, Motion& motion);
 
-/// Turns corners and normals to the present angles. Blocks that never turn may be placed once: `all` = false skips the held.
-void place(const Model& model, const Motion& motion, bool all, Placed& placed);
+/// Turns corners and normals to the present angles; blocks that never turn are placed while there are no boxes yet. Returns
+/// whether there are none, or a point of a block may have moved further along an axis than `skin` since it got its boxes.
+bool place(const Model& model, const Motion& motion, double skin, Placed& placed);
 
 /// Share of the forces of deleted neighbours that is still there, 1 at the start of the stage, 0 after model.release_time.
 double release_share(const Model& model, double stage_time);

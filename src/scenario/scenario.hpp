@@ -189,7 +189,7 @@ struct RunSpec {
     double step_fraction = 0.8;  // of the rigorous bound, when automatic
     bool unchecked = false;      // accept a time step above the stable estimate
     DampingSpec damping;
-    std::string search = "isu";
+    std::string search = "auto";
     std::optional<double> skin;  // m; absent: automatic
     bool face_path = true;       // closed-form path for faces; false: general distance potential everywhere
     int threads = 1;

@@ -84,7 +84,7 @@ Simulation::Simulation(const Scenario& scenario, Scene scene)
 Simulation::Simulation(const Scenario& scenario, Scene scene, State saved) : Simulation(scenario, std::move(scene)) {
     state_ = std::move(saved);
     apply_stage();
-    place(model_, state_.motion, true, placed_);
+    place(model_, state_.motion, skin_, placed_);
     stable_ = stable_step(model_, placed_, state_);
 }
 
@@ -93,9 +93,11 @@ Simulation::Simulation(const Scenario& scenario, Scene scene, State saved) : Sim
 void Simulation::step() {
     const double dt = time_step();
     watch_.lap();
-    load_before_ = state_.load;
-    damping_before_ = state_.damping;
-    kick(model_, state_.load, state_.motion, dt / 2);  // v(t) -> v(t + dt/2)
+    load_before_.resize(state_.load.size());  // what is swapped into the state is overwritten, all of it
+    damping_before_.resize(state_.damping.size());
+    load_before_.swap(state_.load);
+    damping_before_.swap(state_.damping);
+    kick(model_, load_before_, state_.motion, dt / 2);  // v(t) -> v(t + dt/2)
     drive(model_, state_.stage_time + dt / 2, state_.motion);
     drift(state_.motion, dt);  // x(t) -> x(t + dt)
     state_.time += dt;
@@ -118,9 +120,9 @@ void Simulation::step() {
 }
 
 void Simulation::update_forces(double dt) {  // dt = 0 once at the start: no slip
-    place(model_, state_.motion, boxed_position_.empty(), placed_);
+    const bool left = place(model_, state_.motion, skin_, placed_);
     lap(Part::place);
-    if (left_boxes()) refresh();
+    if (left) refresh();
     lap(Part::search);
     update_contacts(model_, placed_, dt, state_, contact_index_);
     lap(Part::contacts);
@@ -180,27 +182,10 @@ double Simulation::time_step() const {
 
 // ---- pairs ----------------------------------------------------------------------------------------------------------
 
-bool Simulation::left_boxes() const {
-    const int nb = model_.blocks.size();
-    if (static_cast<int>(boxed_position_.size()) != nb) return true;
-    double farthest = 0.0;
-#pragma omp parallel for schedule(static) reduction(max : farthest)
-    for (int b = 0; b < nb; ++b) {
-        const Vec2 moved = (state_.motion.position[b] - boxed_position_[b]).cwiseAbs();
-        const double turned = std::abs(state_.motion.angle[b] - boxed_angle_[b]) * model_.blocks.radius[b];
-        farthest = std::max(farthest, std::max(moved.x(), moved.y()) + turned);
-    }
-    return !(farthest <= skin_);
-}
-
 void Simulation::refresh() {
-    talus::part_boxes(model_, state_, placed_, boxes_);
-    for (Box& box : boxes_)
-        if (present(box)) box = box.grown(skin_);
+    rebox(model_, state_, skin_, placed_, boxes_, reboxed_);
     search_->find(boxes_, pairs_);
-    refresh_contacts(model_, placed_, pairs_, skin_, state_, contact_index_);
-    boxed_position_ = state_.motion.position;
-    boxed_angle_ = state_.motion.angle;
+    refresh_contacts(model_, placed_, pairs_, reboxed_, skin_, state_, contact_index_);
     ++refreshes_;
 }
 
@@ -210,8 +195,6 @@ void Simulation::drop_scratch() {
     placed_ = {};
     search_ = make_search(scenario_.run.search);
     pairs_.clear();
-    boxed_position_.clear();
-    boxed_angle_.clear();
 }
 
 // ---- stages ---------------------------------------------------------------------------------------------------------
@@ -263,7 +246,7 @@ void Simulation::delete_blocks() {
         state_.motion.velocity[b].setZero();
         state_.motion.spin[b] = 0.0;
     }
-    boxed_position_.clear();
+    placed_.boxed.clear();
 }
 
 // Of stages to come as much as can be known before the first step: with the blocks, joints and damping that they will have,

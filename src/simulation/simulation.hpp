@@ -62,10 +62,11 @@ public:
     /// of the leapfrog, which comes and goes, does not count. Above `energy_alarm` the run is not to be trusted; beyond
     /// `energy_explosion` it diverges.
     double energy_gain() const;
-    std::int64_t steps_done() const { return steps_done_; }  // in this process
-    double ledger_error() const;                             // J
-    double max_speed() const { return speed_; }              // m/s, in the last step
-    std::int64_t refreshes() const { return refreshes_; }    // how often the list of pairs was made anew
+    std::int64_t steps_done() const { return steps_done_; }          // in this process
+    double ledger_error() const;                                     // J
+    double max_speed() const { return speed_; }                      // m/s, in the last step
+    std::int64_t refreshes() const { return refreshes_; }            // how often the list of pairs was renewed
+    std::string search_choice() const { return search_->choice(); }  // see PairSearch::choice
     const std::array<double, part_names.size()>& seconds() const { return seconds_; }
 
     /// [np] boxes of the convex parts as they are now, without skin; absent ones as in part_boxes.hpp.
@@ -79,7 +80,6 @@ private:
     void delete_blocks();
     void check_stages() const;
     void update_forces(double dt);
-    bool left_boxes() const;
     void refresh();
     void check_speed() const;
     void check_energy();
@@ -98,9 +98,8 @@ private:
     std::unique_ptr<PairSearch> search_;
     std::vector<Pair> pairs_;
     ContactIndex contact_index_;
-    std::vector<Box> boxes_;
-    std::vector<Vec2> boxed_position_;  // [nb] where blocks were when the boxes were made; empty = no list yet
-    std::vector<double> boxed_angle_;
+    std::vector<Box> boxes_;             // [np] grown by the skin
+    std::vector<std::uint8_t> reboxed_;  // [nb] 1 = got new boxes at the last refresh
     std::vector<Force> load_before_, damping_before_;
     double skin_ = 0.0;
 

@@ -184,8 +184,8 @@ TEST_CASE("contact geometry and joint law find a rock under its in-situ stress a
             for (PartId b = a + 1; b < m.parts.size(); ++b) pairs.push_back({a, b});
         Placed placed;
         ContactIndex index;
-        place(m, state.motion, true, placed);
-        refresh_contacts(m, placed, pairs, 0.0, state, index);
+        place(m, state.motion, 0.0, placed);
+        refresh_contacts(m, placed, pairs, std::vector<std::uint8_t>(m.blocks.size(), 1), 0.0, state, index);
         update_contacts(m, placed, 0.0, state, index);
         external_forces(m, state, state.load);
         sum_contacts(m, state.contacts, index, state.load);
