@@ -51,9 +51,9 @@ public:
 
 private:
     /// The work, in plain exchanges per box, after which building anew is the better half of a bad bargain: boxes that all
-    /// jump cost 1.4 times a build, at 1e4 boxes. With twice of it 1.55 times, and columns of blocks that share a coordinate
-    /// and tremble cost half as much again, at 1e5 boxes. A crossing looks at two boxes that lie anywhere in memory.
-    static constexpr std::int64_t worth_repairing = 50, crossing_cost = 10;
+    /// jump cost 1.55 times a build, at 1e4 boxes. With half of it 1.4 times, but then 1e5 blocks of rubble in fast motion
+    /// would be built anew at twice the cost of repair. A crossing looks at two boxes that lie anywhere in memory.
+    static constexpr std::int64_t worth_repairing = 100, crossing_cost = 10;
 
     enum class Sunk { no, yes, lost };
     Sunk sink(const double* coordinate, int place, int lowest, Crossings& met);

@@ -29,7 +29,7 @@ std::unique_ptr<PairSearch> make_isu_separated_search();
 /// The same with both parts shared among threads.
 std::unique_ptr<PairSearch> make_isu_parallel_search();
 
-/// Hierarchical grid: cells for every size of boxes, filled anew at each step. O(N).
+/// Hierarchical grid: a table of cells for each power of four of the size, filled anew at each step. O(N).
 std::unique_ptr<PairSearch> make_grid_search();
 
 /// Safe regions or Verlet lists, whichever the motion asks for: search_auto.cpp.
