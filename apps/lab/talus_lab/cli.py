@@ -67,9 +67,9 @@ def bench_command(options: argparse.Namespace) -> int:
         if figure is None:
             print(f"{name}: no chart, nothing of it was measured")
             continue
-        for picture in (config.images / f"{name}.png", config.output / f"{name}.svg"):
-            figure.savefig(picture)
-            print(picture)
+        figure.savefig(config.output / f"{name}.svg")
+        bench.save_small(figure, config.images / f"{name}.png")
+        print(config.images / f"{name}.png")
     written = config.output / config.page.name if options.quick else config.page
     written.write_text(bench.fill_page(page, config, rows), encoding="utf-8")
     print(written)
