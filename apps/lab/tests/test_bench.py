@@ -245,6 +245,14 @@ def test_growth_is_the_exponent_of_a_power_law():
     assert growth({10: 5 * 10**1.5, 1000: 5 * 1000**1.5}, 10, 1000) == pytest.approx(1.5)
 
 
+def test_totals_run_over_threads_and_skins(study):
+    config = study_config()
+    config["tables"]["ratio"] = {"kind": "totals", "studies": ["alone"], "column": "ns_per_box_median", "series": ["dess", "isu"]}
+    write(study, config)
+    assert command(study) == 0
+    assert "| a rock mass | 1,000 | 4,000 | 30.0 |" in (study / "page.md").read_text()  # 2000 + 2000, 20 + 10
+
+
 def test_numbers_read_well():
     assert [number(x) for x in (12345.6, 123.4, 12.34, 1.234, 0.01234, 0, None)] == ["12,300", "123", "12.3", "1.23", "0.0123", "0", "-"]
 

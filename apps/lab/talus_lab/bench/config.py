@@ -16,7 +16,7 @@ from talus_lab.run import ResultError
 METHODS = ("dess", "dess-fused", "isu", "isu-separated", "isu-parallel", "grid", "direct", "direct-simd", "auto")
 COMMANDS = ("search", "step", "peers")
 CHARTS = ("methods", "parts", "shares")
-TABLES = ("values", "ratios", "spread", "growth")
+TABLES = ("values", "totals", "ratios", "spread", "growth")
 TYPES = {"str": (str, "a text"), "int": (int, "a whole number"), "bool": (bool, "true or false"), "list": (list, "a list"),
          "dict": (dict, "a mapping"), "Any": (object, "")}
 
@@ -69,7 +69,8 @@ class Chart:
 
 @dataclass(frozen=True)
 class Table:
-    """A table of the page. ratios: `pairs` of [numerator, denominator]; the others: `series`."""
+    """A table of the page. ratios: `pairs` of [numerator, denominator]; the others: `series`, such as isu, or isu@2
+    for two threads; totals need them, the others show all without."""
 
     kind: str
     studies: list
@@ -171,43 +172,47 @@ def _nearest(name: object, known: Any) -> str:
 def _contradictions(config: Config) -> list[str]:
     """What the parts of a config say about each other."""
     faults: list[str] = []
-
-    def check(names: Any, known: Any, where: str) -> None:
-        faults.extend(f"{where}: unknown {name}{_nearest(name, known)}" for name in names if name not in known)
-
     for name, scene in config.scenes.items():
         if not (config.path.parent / scene.scenario).is_file():
             faults.append(f"scenes.{name}.scenario: there is no file {scene.scenario}")
-        check(scene.set, config.quantities, f"scenes.{name}.set")
+        faults += _strangers(scene.set, config.quantities, f"scenes.{name}.set")
     for name, study in config.studies.items():
-        where = f"studies.{name}"
-        check([study.command], COMMANDS, f"{where}.command")
-        check(study.scenes, config.scenes, f"{where}.scenes")
-        if study.command != "peers":
-            check(study.methods, (*METHODS, "read"), f"{where}.methods")
-        if len(study.vary) != 1 or not isinstance(study.values, list) or not study.values:
-            faults.append(f"{where}.vary: is not one quantity with a list of values")
-            continue
-        for scene in study.scenes:
-            if scene in config.scenes:
-                check([study.varied, *study.fixed], config.scenes[scene].set, f"{where}, scene {scene}")
-        faults += [f"{where}, scene {scene}: {fault}" for scene in study.scenes if scene in config.scenes
-                   for fault in _formula_faults(config, scene, study)]
+        faults += _study_faults(config, study, f"studies.{name}")
     for name, chart in config.charts.items():
-        check([chart.kind], CHARTS, f"charts.{name}.kind")
+        faults += _strangers([chart.kind], CHARTS, f"charts.{name}.kind")
         for k, panel in enumerate(chart.panels):
-            where = f"charts.{name}.panels[{k}]"
-            if not isinstance(panel, dict):
-                faults.append(f"{where}: is not a mapping")
-                continue
-            check(panel, ("studies", "scene", "title", "column", "where"), where)
-            check(panel.get("studies", [""]), config.studies, f"{where}.studies")
-            check([panel.get("scene", "")], config.scenes, f"{where}.scene")
+            faults += _panel_faults(config, panel, f"charts.{name}.panels[{k}]")
     for name, table in config.tables.items():
-        check([table.kind], TABLES, f"tables.{name}.kind")
-        check(table.studies, config.studies, f"tables.{name}.studies")
-        check([table.column], config.quantities, f"tables.{name}.column")
+        faults += _strangers([table.kind], TABLES, f"tables.{name}.kind")
+        faults += _strangers(table.studies, config.studies, f"tables.{name}.studies")
+        faults += _strangers([table.column], config.quantities, f"tables.{name}.column")
     return faults
+
+
+def _strangers(names: Any, known: Any, where: str) -> list[str]:
+    return [f"{where}: unknown {name}{_nearest(name, known)}" for name in names if name not in known]
+
+
+def _study_faults(config: Config, study: Study, where: str) -> list[str]:
+    faults = _strangers([study.command], COMMANDS, f"{where}.command") + _strangers(study.scenes, config.scenes, f"{where}.scenes")
+    if study.command != "peers":
+        faults += _strangers(study.methods, (*METHODS, "read"), f"{where}.methods")
+    if len(study.vary) != 1 or not isinstance(study.values, list) or not study.values:
+        return faults + [f"{where}.vary: is not one quantity with a list of values"]
+    for scene in study.scenes:
+        if scene in config.scenes:
+            faults += _strangers([study.varied, *study.fixed], config.scenes[scene].set, f"{where}, scene {scene}")
+            faults += [f"{where}, scene {scene}: {fault}" for fault in _formula_faults(config, scene, study)]
+    return faults
+
+
+def _panel_faults(config: Config, panel: object, where: str) -> list[str]:
+    if not isinstance(panel, dict) or not panel.get("studies") or "scene" not in panel:
+        return [f"{where}: has no studies or no scene"]
+    return (_strangers(panel, ("studies", "scene", "title", "column", "where"), where)
+            + _strangers(panel["studies"], config.studies, f"{where}.studies")
+            + _strangers([panel["scene"]], config.scenes, f"{where}.scene")
+            + _strangers([panel.get("column", "ns_per_box_median")], config.quantities, f"{where}.column"))
 
 
 def _formula_faults(config: Config, scene: str, study: Study) -> list[str]:

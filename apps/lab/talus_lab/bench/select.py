@@ -20,6 +20,16 @@ def series(rows: Rows, column: str, studies: list[str], scene: str, where: Mappi
     return {name: dict(sorted(found[name].items())) for name in sorted(found, key=_place)}
 
 
+def totals(rows: Rows, column: str, study: str, scene: str) -> dict[str, dict[float, float]]:
+    """By method: the value of the quantity varied -> the sum of this column over all numbers of threads and skins."""
+    found: dict[str, dict[float, float]] = {}
+    for row in rows:
+        if row["study"] == study and row["scene"] == scene and row[column]:
+            line = found.setdefault(row["method"], {})
+            line[float(row["value"])] = line.get(float(row["value"]), 0.0) + float(row[column])
+    return found
+
+
 def label(row: Mapping[str, str]) -> str:
     return row["method"] if row["threads"] in ("", "1") else f"{row['method']}@{row['threads']}"
 

@@ -7,7 +7,7 @@ import re
 from typing import Any, Sequence
 
 from talus_lab.bench.config import Config, Table
-from talus_lab.bench.select import Rows, growth, series, words
+from talus_lab.bench.select import Rows, growth, series, totals, words
 from talus_lab.run import ResultError
 
 BLOCK = re.compile(r"(<!-- table ([^ >]+) -->\n).*?(<!-- end -->)", re.DOTALL)
@@ -26,7 +26,7 @@ def fill_page(text: str, config: Config, rows: Rows) -> str:
 
 def markdown(config: Config, table: Table, rows: Rows) -> str:
     rows = list(rows)
-    head, body = {"values": _values, "ratios": _ratios, "spread": _spread, "growth": _growth}[table.kind](config, table, rows)
+    head, body = {"values": _values, "totals": _totals, "ratios": _ratios, "spread": _spread, "growth": _growth}[table.kind](config, table, rows)
     body = [line for line in body if any(cell != "-" for cell in line[2:])]
     if not body:
         return NOTHING
@@ -42,6 +42,17 @@ def _values(config: Config, table: Table, rows: list) -> Parts:
     names = table.series or _all(config, table, rows)
     body = [[where, at, *(number(lines.get(name, {}).get(value)) for name in names)] for where, at, value, lines in _points(config, table, rows)]
     return ["scene", _varied(config, table), *map(words, names)], body
+
+
+def _totals(config: Config, table: Table, rows: list) -> Parts:
+    """Sums over all numbers of threads and skins."""
+    body = []
+    for study in table.studies:
+        for scene in config.studies[study].scenes:
+            lines = totals(rows, table.column, study, scene)
+            body += [[config.scenes[scene].name, f"{value:,.10g}", *(number(lines.get(name, {}).get(value)) for name in table.series)]
+                     for value in config.studies[study].values]
+    return ["scene", _varied(config, table), *table.series], body
 
 
 def _ratios(config: Config, table: Table, rows: list) -> Parts:
