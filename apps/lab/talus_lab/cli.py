@@ -25,6 +25,7 @@ def main(arguments: list[str] | None = None) -> int:
         print(f"talus-lab: {error}", file=sys.stderr)
         return BAD_INPUT
     except KeyboardInterrupt:
+        print("talus-lab: interrupted", file=sys.stderr)
         return INTERRUPTED
 
 
