@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 import argparse
-import os
-import shutil
 import subprocess
 import sys
 import tempfile
 from pathlib import Path
 
 import talus_lab
-from talus_lab import plot
+from talus_lab import bench, plot
+from talus_lab.program import find_talus
 from talus_lab.run import ResultError, Run, open_run
 
 BAD_INPUT = 2  # exit code for anything the user gave, as in talus
+INTERRUPTED = 130
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -24,6 +24,9 @@ def main(arguments: list[str] | None = None) -> int:
     except (ResultError, OSError) as error:
         print(f"talus-lab: {error}", file=sys.stderr)
         return BAD_INPUT
+    except KeyboardInterrupt:
+        print("talus-lab: interrupted", file=sys.stderr)
+        return INTERRUPTED
 
 
 def plot_command(options: argparse.Namespace) -> int:
@@ -51,17 +54,31 @@ def check_geometry(scenario: Path, result: Path) -> Run:
     return open_run(result)
 
 
-def find_talus() -> str:
-    """The program: $TALUS, the release build of the source tree this tool was installed from, or what is on the path."""
-    built = Path(__file__).resolve().parents[3] / "build/release/bin/talus"
-    found = os.environ.get("TALUS") or (str(built) if built.exists() else shutil.which("talus"))
-    if not found:
-        raise ResultError("talus is not built; ./dev build does it, or set TALUS to the program")
-    return found
+def bench_command(options: argparse.Namespace) -> int:
+    config = bench.read_config(options.config)
+    page = config.page.read_text(encoding="utf-8")
+    if options.quick:
+        config = bench.quick(config)
+    bench.fill_page(page, config, [])  # faults of the page before hours of measuring
+    rows = bench.measure(config, find_talus(), options.long, options.again, lambda line: print(line, flush=True))
+    print(config.output / "results.csv")
+    config.images.mkdir(parents=True, exist_ok=True)
+    for name, chart in config.charts.items():
+        figure = bench.draw(config, chart, rows)
+        if figure is None:
+            print(f"{name}: no chart, nothing of it was measured")
+            continue
+        figure.savefig(config.output / f"{name}.svg")
+        bench.save_small(figure, config.images / f"{name}.png")
+        print(config.images / f"{name}.png")
+    written = config.output / config.page.name if options.quick else config.page
+    written.write_text(bench.fill_page(page, config, rows), encoding="utf-8")
+    print(written)
+    return 0
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(prog="talus-lab", description="Reads the results of talus and draws them.")
+    parser = argparse.ArgumentParser(prog="talus-lab", description="Reads the results of talus and draws them; measures contact searches.")
     parser.add_argument("--version", action="version", version=f"talus-lab {talus_lab.__version__}")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
 
@@ -77,6 +94,13 @@ def _parser() -> argparse.ArgumentParser:
     p.add_argument("--before-after", action="store_true", help="the first frame beside the chosen one")
     p.add_argument("--exaggerate", type=float, default=1.0, metavar="X", help="draw movements X times as large")
     p.set_defaults(command=plot_command)
+
+    b = commands.add_parser("bench", help="measure contact searches as a config says; table, charts and the numbers of its page")
+    b.add_argument("config", type=Path, metavar="CONFIG.yaml")
+    b.add_argument("--quick", action="store_true", help="each study in its shortest form, to see that it works; the page is left alone")
+    b.add_argument("--long", action="store_true", help="with the studies marked `long`")
+    b.add_argument("--again", action="store_true", help="measure also what an earlier run has measured")
+    b.set_defaults(command=bench_command)
     return parser
 
 

@@ -1,0 +1,11 @@
+"""Studies of contact searches: a config says what `talus bench` measures; the numbers become one CSV, charts and the tables of a page.
+
+>>> rows = measure(read_config(path), talus)
+"""
+
+from talus_lab.bench.charts import draw, save_small
+from talus_lab.bench.config import read_config
+from talus_lab.bench.measure import measure, quick
+from talus_lab.bench.tables import fill_page
+
+__all__ = ["draw", "fill_page", "measure", "quick", "read_config", "save_small"]
