@@ -31,7 +31,7 @@ void CellGrid::reset(int n, double width, double typical) {
     for (int k = 0; k < level_count; ++k) {
         const double per_cell = 1.0 / std::ldexp(smallest_, k);
         const double across = std::clamp(width * per_cell, 3.0, 1e9);
-        level_[k] = {per_cell, static_cast<std::int64_t>(across) | 1, k * 7919, 0.0, 0};
+        level_[k] = {per_cell, static_cast<std::size_t>(across) | 1, 7919u * static_cast<unsigned>(k), 0.0, 0};
     }
     levels_.clear();
     outsized_.clear();

@@ -89,10 +89,10 @@ private:
         int more = -1;                       // the first of those for whom there is no room
     };
     struct Level {
-        double per_cell;      // 1/m
-        std::int64_t stride;  // places from one row of cells to the next
-        std::int64_t first;   // place of the cell (0, 0)
-        double largest;       // m, size of its boxes
+        double per_cell;     // 1/m
+        std::size_t stride;  // places from one row of cells to the next
+        std::size_t first;   // place of the cell (0, 0)
+        double largest;      // m, size of its boxes
         int population;
     };
     static constexpr int nowhere = -1, level_count = 64, outsized = level_count;
@@ -101,7 +101,8 @@ private:
         return static_cast<std::int64_t>(std::floor(std::clamp(at * level.per_cell, -1e15, 1e15)));
     }
     std::size_t place(std::int64_t x, std::int64_t y, const Level& level) const {
-        return static_cast<std::size_t>(x + y * level.stride + level.first) & mask_;
+        // unsigned: far out it may run over
+        return (static_cast<std::size_t>(x) + static_cast<std::size_t>(y) * level.stride + level.first) & mask_;
     }
     int level_of(const CoarseBox& box) const;
     std::size_t place_of(const CoarseBox& box, int level) const;
