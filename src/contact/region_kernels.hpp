@@ -21,6 +21,10 @@ void find_escaped(std::span<const Box> boxes, const Vec2& centre, const Regions&
 struct WatchedPairs {
     std::vector<std::uint32_t> box, other;  // [pairs] the highest bit of `other` says whether they overlap
     static constexpr std::uint32_t flag = 1u << 31;
+
+    int first(std::size_t k) const { return static_cast<int>(box[k]); }
+    int second(std::size_t k) const { return static_cast<int>(other[k] & ~flag); }
+    bool overlaps(std::size_t k) const { return (other[k] & flag) != 0; }
 };
 
 void compare_watched(std::span<const Box> boxes, WatchedPairs& pairs);

@@ -16,6 +16,7 @@
 #include "contact/cell_grid.hpp"
 #include "contact/moving_search.hpp"
 #include "contact/neighbour_lists.hpp"
+#include "contact/pair_set.hpp"
 #include "contact/region_kernels.hpp"
 #include "contact/threads.hpp"
 #include "contact/viewpoint.hpp"
@@ -72,25 +73,18 @@ public:
     }
 
     void pairs(std::vector<Pair>& pairs) const override {
-        pairs.clear();
-        bool sorted = true;
-        for (int w = 0; w < static_cast<int>(watched_.size()); ++w) {
-            const std::size_t first = pairs.size();
-            const auto tell = [&](int i, int j) {
-                pairs.push_back({std::min(i, j), std::max(i, j)});
-                sorted = sorted && i < j;
-            };
-            for (int i = few * w; i < std::min(few * w + few, n_); ++i)
-                for (const Neighbour n : lists_.of(i)) {
-                    if (n.watch() == Watch::all_bounds || keeper(i, n.box()) != i) continue;
-                    if (n.watch() == Watch::one_bound ? reaches(i, n.box()) : n.overlaps()) tell(i, n.box());
-                }
-            for (std::size_t k = 0; k < watched_[w].box.size(); ++k)
-                if (watched_[w].other[k] & WatchedPairs::flag)
-                    tell(static_cast<int>(watched_[w].box[k]), static_cast<int>(watched_[w].other[k] & ~WatchedPairs::flag));
-            std::sort(pairs.begin() + static_cast<std::ptrdiff_t>(first), pairs.end());
-        }
-        if (!sorted) std::sort(pairs.begin(), pairs.end());
+        std::vector<Pair> found;
+        found.reserve(2 * static_cast<std::size_t>(n_));
+        const auto tell = [&](int i, int j) { found.push_back({std::min(i, j), std::max(i, j)}); };
+        for (int i = 0; i < n_; ++i)
+            for (const Neighbour n : lists_.of(i)) {
+                if (n.watch() == Watch::all_bounds || keeper(i, n.box()) != i) continue;
+                if (n.watch() == Watch::one_bound ? reaches(i, n.box()) : n.overlaps()) tell(i, n.box());
+            }
+        for (const WatchedPairs& group : watched_)
+            for (std::size_t k = 0; k < group.box.size(); ++k)
+                if (group.overlaps(k)) tell(group.first(k), group.second(k));
+        sort_pairs(n_, found, pairs);
     }
 
     int looked_at() const override { return static_cast<int>(escaped_.size()); }
@@ -310,8 +304,7 @@ private:
         const WatchedPairs& pairs = watched_[group];
         calm_.clear();
         for (std::size_t k = 0; k < pairs.box.size(); ++k) {
-            const int i = static_cast<int>(pairs.box[k]);
-            if (calm(i, static_cast<int>(pairs.other[k] & ~WatchedPairs::flag))) calm_.push_back(i);
+            if (calm(pairs.first(k), pairs.second(k))) calm_.push_back(pairs.first(k));
         }
         std::sort(calm_.begin(), calm_.end());
         calm_.erase(std::unique(calm_.begin(), calm_.end()), calm_.end());

@@ -5,6 +5,7 @@
 // the pairs that belong to that; nothing is ever listed anew as a whole, so that no step costs much more than the others.
 #include "contact/cell_grid.hpp"
 #include "contact/moving_search.hpp"
+#include "contact/pair_set.hpp"
 #include "contact/region_kernels.hpp"
 #include "contact/threads.hpp"
 #include "contact/viewpoint.hpp"
@@ -40,19 +41,13 @@ public:
     }
 
     void pairs(std::vector<Pair>& pairs) const override {
-        pairs.clear();
-        bool sorted = true;
-        for (const WatchedPairs& group : groups_) {
-            const std::size_t first = pairs.size();
-            for (std::size_t k = 0; k < group.box.size(); ++k) {
-                if (!(group.other[k] & WatchedPairs::flag)) continue;
-                const int i = static_cast<int>(group.box[k]), j = other(group, k);
-                pairs.push_back({std::min(i, j), std::max(i, j)});
-                sorted = sorted && i < j;
-            }
-            std::sort(pairs.begin() + static_cast<std::ptrdiff_t>(first), pairs.end());
-        }
-        if (!sorted) std::sort(pairs.begin(), pairs.end());
+        std::vector<Pair> found;
+        found.reserve(2 * static_cast<std::size_t>(n_));
+        for (const WatchedPairs& group : groups_)
+            for (std::size_t k = 0; k < group.box.size(); ++k)
+                if (group.overlaps(k))
+                    found.push_back({std::min(group.first(k), group.second(k)), std::max(group.first(k), group.second(k))});
+        sort_pairs(n_, found, pairs);
     }
 
     int looked_at() const override { return static_cast<int>(escaped_.size()); }
@@ -75,10 +70,6 @@ private:
     static constexpr int rest = 64;   // steps between looks for pairs that came too far apart
     static constexpr int many = 512;  // neighbours that make a hub
     static constexpr double least_margin = 0.1;
-
-    static int other(const WatchedPairs& group, std::size_t k) {
-        return static_cast<int>(group.other[k] & ~WatchedPairs::flag);
-    }
 
     Box seen(int i) const { return view_.seen(boxes_[i]); }
 
@@ -163,16 +154,14 @@ private:
     // The pairs that a box keeps itself. Those that others keep with it stay until they are listed anew, and do no harm.
     void drop(int i) {
         WatchedPairs& group = groups_[i / few];
-        drop_if(group, [&](std::size_t k) { return group.box[k] == static_cast<std::uint32_t>(i); });
+        drop_if(group, [&](std::size_t k) { return group.first(k) == i; });
     }
 
     void take_out(int i) {
         if (grid_.holds(i)) {
             grid_.remove(i);
             for (WatchedPairs& group : groups_)
-                drop_if(group, [&](std::size_t k) {
-                    return group.box[k] == static_cast<std::uint32_t>(i) || other(group, k) == i;
-                });
+                drop_if(group, [&](std::size_t k) { return group.first(k) == i || group.second(k) == i; });
         }
         speed_[i] = 0.0F;
         since_[i] = step_;
@@ -189,9 +178,7 @@ private:
         for (int g = 0; g < groups; ++g) compare_watched(boxes_, groups_[g]);
         for (int g = step_ % rest; g < groups; g += rest) {
             WatchedPairs& group = groups_[g];
-            drop_if(group, [&](std::size_t k) {
-                return !grid_.box(static_cast<int>(group.box[k])).overlaps(grid_.box(other(group, k)));
-            });
+            drop_if(group, [&](std::size_t k) { return !grid_.box(group.first(k)).overlaps(grid_.box(group.second(k))); });
         }
     }
 
