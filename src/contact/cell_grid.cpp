@@ -1,5 +1,7 @@
 #include "contact/cell_grid.hpp"
 
+#include "contact/search_methods.hpp"
+
 #include <bit>
 #include <limits>
 #include <utility>
@@ -138,6 +140,18 @@ void CellGrid::remove(int i) {
         }
     }
     node.level = nowhere;
+}
+
+std::vector<Pair> CellGrid::all_overlapping() const {
+    std::vector<Box> boxes;
+    boxes.reserve(node_.size());
+    for (const Node& node : node_) {
+        const CoarseBox& b = node.box;
+        boxes.push_back(node.level == nowhere ? Box{1.0, 1.0, -1.0, -1.0} : Box{b.xmin, b.ymin, b.xmax, b.ymax});
+    }
+    std::vector<Pair> pairs;
+    make_grid_search()->find(boxes, pairs);
+    return pairs;
 }
 
 }  // namespace talus

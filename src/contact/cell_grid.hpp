@@ -77,6 +77,9 @@ public:
         }
     }
 
+    /// All pairs a < b of boxes in the grid that overlap, sorted: much faster than to ask for each.
+    std::vector<Pair> all_overlapping() const;
+
 private:
     struct Node {  // of a box
         CoarseBox box;

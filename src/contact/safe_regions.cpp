@@ -436,20 +436,11 @@ private:
             move_reference(i, b);
             grid_.insert(i, coarse_box(i, b));
         }
-        for (int i = 0; i < n_; ++i) {
-            if (!grid_.holds(i)) continue;
-            grid_.overlapping(grid_.box(i), {}, [&](int j) {
-                if (j != i) lists_.add(i, Neighbour(j, boxes_[i].overlaps(boxes_[j]), Watch::not_at_all));
-            });
-            hub_[i] = lists_.of(i).size() > many;
-        }
-        for (int i = 0; i < n_; ++i) {
-            if (!hub_[i]) continue;
-            old_.clear();
-            for (const Neighbour n : lists_.of(i))
-                if (!hub_[n.box()]) old_.push_back(n.box());
-            for (const int j : old_) lists_.remove(i, j);
-        }
+        const std::vector<Pair> near = grid_.all_overlapping();
+        std::vector<int> neighbours(n_, 0);
+        for (const Pair& pair : near) ++neighbours[pair.a], ++neighbours[pair.b];
+        for (int i = 0; i < n_; ++i) hub_[i] = neighbours[i] > many;
+        for (const Pair& pair : near) join(pair.a, pair.b);
         for (int i = 0; i < n_; ++i)
             if (grid_.holds(i)) first_region(i);
     }

@@ -190,29 +190,11 @@ private:
         grid_.reset(n_, view_.width(), view_.typical());
         hub_.assign(n_, 0);
         for (int i = 0; i < n_; ++i) present(boxes_[i]) ? enclose(i, seen(i)) : take_out(i);
-        if (!fill()) fill();
-    }
-
-    // All pairs. False if a box turned out to be a hub, which changes who keeps its pairs.
-    bool fill() {
-        bool settled = true;
-        for (WatchedPairs& group : groups_) {
-            group = {};
-            group.box.reserve(4 * few);
-            group.other.reserve(4 * few);
-        }
-        for (int i = 0; i < n_; ++i) {
-            if (!grid_.holds(i)) continue;
-            int neighbours = 0;
-            grid_.overlapping(grid_.box(i), {}, [&](int j) {
-                ++neighbours;
-                if (j != i && keeper(i, j) == i) keep(i, j);
-            });
-            if (neighbours <= many || hub_[i]) continue;
-            hub_[i] = 1;
-            settled = false;
-        }
-        return settled;
+        const std::vector<Pair> near = grid_.all_overlapping();
+        std::vector<int> neighbours(n_, 0);
+        for (const Pair& pair : near) ++neighbours[pair.a], ++neighbours[pair.b];
+        for (int i = 0; i < n_; ++i) hub_[i] = neighbours[i] > many;
+        for (const Pair& pair : near) keep(pair.a, pair.b);
     }
 
     std::span<const Box> boxes_;  // during update() only
