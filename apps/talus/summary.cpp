@@ -99,15 +99,19 @@ void print_energy(const Simulation& simulation) {
 void print_timing(const Simulation& simulation, double wall_time) {
     const auto& seconds = simulation.seconds();
     const double all = std::accumulate(seconds.begin(), seconds.end(), 0.0);
-    std::printf("  time           %s for %lld steps (%.0f steps/s), list of pairs made %lld times; of the step:",
-                number(wall_time, "s").c_str(), static_cast<long long>(simulation.steps_done()),
-                static_cast<double>(simulation.steps_done()) / std::max(all, 1e-9),
-                static_cast<long long>(simulation.refreshes()));
+    std::printf(
+        "  time           %s for %lld steps (%.0f steps/s), list of pairs renewed %lld times, for %.2g %% of the blocks "
+        "each; of the step:",
+        number(wall_time, "s").c_str(), static_cast<long long>(simulation.steps_done()),
+        static_cast<double>(simulation.steps_done()) / std::max(all, 1e-9), static_cast<long long>(simulation.refreshes()),
+        100.0 * static_cast<double>(simulation.boxes_renewed()) /
+            std::max<double>(static_cast<double>(simulation.refreshes()) * simulation.model().blocks.size(), 1.0));
     for (std::size_t i = 0; i < seconds.size(); ++i)
         std::printf(" %s %.1f %%%s", part_names[i], 100.0 * seconds[i] / std::max(all, 1e-9),
                     i + 1 < seconds.size() ? "," : "\n");
     if (!simulation.search_choice().empty())
-        std::printf("  search         %s: %s\n", simulation.scenario().run.search.c_str(), simulation.search_choice().c_str());
+        std::printf("  search         %s: %s\n", simulation.scenario().run.search.c_str(),
+                    simulation.search_choice().c_str());
     const MemoryUse memory = memory_use();
     std::printf("  memory         %.0f MB at the end, %.0f MB at most (cutting and frames)\n", memory.now / 1e6,
                 memory.peak / 1e6);

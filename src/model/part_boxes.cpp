@@ -26,23 +26,26 @@ void part_boxes(const Model& model, const State& state, const Placed& placed, st
     }
 }
 
-void rebox(const Model& model, const State& state, double skin, Placed& placed, std::vector<Box>& boxes,
+int rebox(const Model& model, const State& state, double skin, Placed& placed, std::vector<Box>& boxes,
            std::vector<std::uint8_t>& reboxed) {
     const int nb = model.blocks.size();
     const bool all = placed.boxed.empty();
     placed.boxed.resize(nb);
     boxes.resize(model.parts.size());
     reboxed.resize(nb);
-#pragma omp parallel for schedule(static)
+    int count = 0;
+#pragma omp parallel for schedule(static) reduction(+ : count)
     for (BlockId b = 0; b < nb; ++b) {
         const Vec2& at = state.motion.position[b];
         const double angle = state.motion.angle[b];
         reboxed[b] = all || !(placed.boxed[b].moved(at, angle) <= kept_share * skin);
         if (!reboxed[b]) continue;
+        ++count;
         placed.boxed[b] = {at, angle, model.blocks.radius[b]};
         for (PartId p = model.blocks.first_part[b]; p < model.blocks.first_part[b + 1]; ++p)
             boxes[p] = state.removed[b] ? absent : part_box(model, placed, p, at).grown(skin);
     }
+    return count;
 }
 
 }  // namespace talus

@@ -183,7 +183,7 @@ double Simulation::time_step() const {
 // ---- pairs ----------------------------------------------------------------------------------------------------------
 
 void Simulation::refresh() {
-    rebox(model_, state_, skin_, placed_, boxes_, reboxed_);
+    boxes_renewed_ += rebox(model_, state_, skin_, placed_, boxes_, reboxed_);
     search_->find(boxes_, pairs_);
     refresh_contacts(model_, placed_, pairs_, reboxed_, skin_, state_, contact_index_);
     ++refreshes_;

@@ -66,6 +66,7 @@ public:
     double ledger_error() const;                                     // J
     double max_speed() const { return speed_; }                      // m/s, in the last step
     std::int64_t refreshes() const { return refreshes_; }            // how often the list of pairs was renewed
+    std::int64_t boxes_renewed() const { return boxes_renewed_; }    // of how many blocks, over all refreshes
     std::string search_choice() const { return search_->choice(); }  // see PairSearch::choice
     const std::array<double, part_names.size()>& seconds() const { return seconds_; }
 
@@ -106,7 +107,7 @@ private:
     StableStep stable_;
     bool equilibrium_ = false;
     double speed_ = 0.0;
-    std::int64_t refreshes_ = 0, steps_done_ = 0;
+    std::int64_t refreshes_ = 0, boxes_renewed_ = 0, steps_done_ = 0;
     std::array<double, part_names.size()> seconds_{};
     Stopwatch watch_;
 };
