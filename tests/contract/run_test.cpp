@@ -56,7 +56,7 @@ rock:
 blocks:
   - {name: stone, outline: [[2, 10], [2.6, 10.1], [2.4, 10.6]], repeat: {count: 5, step: [2.3, 0.4]}, velocity: [3, -9]}
 initial_stress: {k0: 0.5}
-run: {until: {time: 0.8}, damping: {contact: 1e-5}}
+run: {until: {time: 0.4}, damping: {contact: 1e-5}}
 )";
 
 constexpr int look = 50;  // steps between two hashes
@@ -140,7 +140,8 @@ TEST_CASE("one hash for every search, number of threads and skin") {
 TEST_CASE("one hash where few blocks are fast and the rest stays, and only those are looked at again") {
     const Trace expected = trace(scenario_of(stones));
     for (const char* search : search_names())
-        for (const auto& [threads, skin] : {Choice{1, -1.0}, Choice{2, 0.0}, Choice{2, 0.01}, Choice{1, 0.2}}) {
+        for (const auto& [threads, skin] : {Choice{1, -1.0}, Choice{1, 0.2}, Choice{1, 0.0}, Choice{2, 0.01}}) {
+            if ((skin == 0.0 || threads > 1) && search != search_names().front()) continue;  // these take their time
             Scenario scenario = scenario_of(stones);
             scenario.run.search = search;
             scenario.run.threads = threads;
