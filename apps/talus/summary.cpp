@@ -100,7 +100,7 @@ void print_timing(const Simulation& simulation, double wall_time) {
     const auto& seconds = simulation.seconds();
     const double all = std::accumulate(seconds.begin(), seconds.end(), 0.0);
     std::printf(
-        "  time           %s for %lld steps (%.0f steps/s), list of pairs renewed %lld times, for %.2g %% of the blocks "
+        "  time           %s for %lld steps (%.0f steps/s), list of pairs renewed %lld times, for %.3g %% of the blocks "
         "each; of the step:",
         number(wall_time, "s").c_str(), static_cast<long long>(simulation.steps_done()),
         static_cast<double>(simulation.steps_done()) / std::max(all, 1e-9), static_cast<long long>(simulation.refreshes()),
