@@ -27,7 +27,7 @@ void part_boxes(const Model& model, const State& state, const Placed& placed, st
 }
 
 int rebox(const Model& model, const State& state, double skin, Placed& placed, std::vector<Box>& boxes,
-           std::vector<std::uint8_t>& reboxed) {
+          std::vector<std::uint8_t>& reboxed) {
     const int nb = model.blocks.size();
     const bool all = placed.boxed.empty();
     placed.boxed.resize(nb);

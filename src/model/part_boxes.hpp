@@ -20,6 +20,6 @@ inline constexpr double kept_share = 0.25;
 /// New boxes, grown by the skin, for the blocks that have left theirs or soon may; for all if there are none yet.
 /// `reboxed` [nb]: 1 for those. Returns how many.
 int rebox(const Model& model, const State& state, double skin, Placed& placed, std::vector<Box>& boxes,
-           std::vector<std::uint8_t>& reboxed);
+          std::vector<std::uint8_t>& reboxed);
 
 }  // namespace talus
