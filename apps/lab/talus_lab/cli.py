@@ -60,8 +60,12 @@ def bench_command(options: argparse.Namespace) -> int:
     if options.quick:
         config = bench.quick(config)
     bench.fill_page(page, config, [])  # faults of the page before hours of measuring
-    rows = bench.measure(config, find_talus(), options.long, options.again, lambda line: print(line, flush=True))
-    print(config.output / "results.csv")
+    if options.draw:
+        rows = bench.measured(config)
+    else:
+        rows = bench.measure(config, find_talus(), options.long, options.again, lambda line: print(line, flush=True))
+        print(config.output / "results.csv")
+    config.output.mkdir(parents=True, exist_ok=True)
     config.images.mkdir(parents=True, exist_ok=True)
     for name, chart in config.charts.items():
         figure = bench.draw(config, chart, rows)
@@ -99,6 +103,7 @@ def _parser() -> argparse.ArgumentParser:
     b.add_argument("config", type=Path, metavar="CONFIG.yaml")
     b.add_argument("--quick", action="store_true", help="each study in its shortest form, to see that it works; the page is left alone")
     b.add_argument("--long", action="store_true", help="with the studies marked `long`")
+    b.add_argument("--draw", action="store_true", help="charts and page from what was measured so far, and nothing else")
     b.add_argument("--again", action="store_true", help="measure also what an earlier run has measured")
     b.set_defaults(command=bench_command)
     return parser

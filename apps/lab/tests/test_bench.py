@@ -123,6 +123,8 @@ def test_an_interrupted_study_goes_on_where_it_stopped(study, capsys):
     said = capsys.readouterr().err
     assert "rock: nothing is left of it" in said and "goes on from here" in said
     assert {row["value"] for row in results(study)} == {"100", "1000"} and len(asked(study)) == 3
+    assert command(study, "--draw") == 0 and asked(study) == []
+    assert "| 1,000 | 100 |" in (study / "page.md").read_text() and "10,000 |" not in (study / "page.md").read_text()
     (study / "bin" / "fail").unlink()
     assert command(study) == 0
     assert len(asked(study)) == 1 + 4

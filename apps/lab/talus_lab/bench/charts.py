@@ -22,8 +22,10 @@ METHOD_STYLE = {
     "dess": ("#d55e00", "o", "-"), "dess-fused": ("#d55e00", "s", "--"), "isu": ("#0072b2", "^", "-"), "isu-separated": ("#0072b2", "v", "--"),
     "isu-parallel": ("#56b4e9", "D", "-."), "grid": ("#009e73", "P", "-"), "direct": ("#8c8c8c", "x", "-"), "direct-simd": ("#8c8c8c", "+", "--"),
     "auto": ("#000000", "*", "-"), "read": ("#b0b0b0", "", ":"),
+    "box2d": ("#e69f00", "o", "-"), "box2d-wide": ("#e69f00", "s", "--"), "bullet-tree": ("#cc79a7", "^", "-"),
+    "bullet-tree-wide": ("#cc79a7", "v", "--"),
 }
-OTHERS = [("#cc79a7", mark, line) for line in ("-", "--") for mark in "osdX^v"]  # other libraries
+OTHERS = [("#5c3d75", mark, line) for line in ("-", "--") for mark in "dXosP"]
 PARTS = {"move": ("#56b4e9", "v"), "place": ("#009e73", "s"), "search": ("#d55e00", "o"), "contacts_part": ("#0072b2", "^"),
          "sum": ("#cc79a7", "D"), "account": ("#e69f00", "P"), "ns_per_block_and_step": ("#000000", "*")}
 PART_WORDS = {"contacts_part": "contacts", "ns_per_block_and_step": "whole step"}
@@ -37,7 +39,7 @@ def draw(config: Config, chart: Chart, rows: Rows) -> Figure | None:
         wide = min(chart.columns, len(chart.panels))
         high = math.ceil(len(chart.panels) / wide)
         figure = Figure(figsize=(1.0 + 3.2 * wide, 0.8 + 2.5 * high), dpi=100)
-        axes = figure.subplots(high, wide, squeeze=False, sharey=False if chart.kind == "shares" else "row")
+        axes = figure.subplots(high, wide, squeeze=False, **({"sharex": True} if chart.kind == "shares" else {"sharey": "row"}))
         drawn = [draw_panel(ax, config, chart, panel, rows) for ax, panel in zip(axes.flat, chart.panels)]
         if not any(drawn):
             return None

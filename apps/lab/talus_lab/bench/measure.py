@@ -52,10 +52,7 @@ def measure(config: Config, talus: str, long: bool = False, again: bool = False,
     table = config.output / "results.csv"
     everything = [Point(name, scene, value) for name, study in config.studies.items() for scene in study.scenes for value in study.values]
     names = {point.name for point in everything}
-    kept = read_rows(table)
-    if kept and set(kept[0]) != set(COLUMNS):
-        raise ResultError(f"{table}: is not a table of this version; move it away, and everything is measured anew")
-    rows = [row for row in kept if _name(row) in names]
+    rows = [row for row in measured(config) if _name(row) in names]
     missing = [name for name, study in config.studies.items() if study.command == "peers" and not programs.peers]
     if missing:
         say(f"left out, talus_bench_peers is not built: {', '.join(missing)}")
@@ -73,6 +70,15 @@ def measure(config: Config, talus: str, long: bool = False, again: bool = False,
         say(f"{where}: {time.monotonic() - started:.1f} s")
     order = {point.name: k for k, point in enumerate(everything)}
     return sorted(rows, key=lambda row: order[_name(row)])
+
+
+def measured(config: Config) -> list[Row]:
+    """The rows that are there already."""
+    table = config.output / "results.csv"
+    rows = read_rows(table)
+    if rows and set(rows[0]) != set(COLUMNS):
+        raise ResultError(f"{table}: is not a table of this version; move it away, and everything is measured anew")
+    return rows
 
 
 def quick(config: Config) -> Config:
