@@ -13,9 +13,10 @@ class AutoSearch final : public PairSearch {
 public:
     void update(std::span<const Box> boxes) override {
         search_->update(boxes);
-        const int n = std::max(1, static_cast<int>(boxes.size()));
-        activity_ += (std::min(happened() / n, 1.0) - activity_) / memory;
-        if (--wait_ > 0 || (way_ == Way::regions ? activity_ < lively : activity_ > calm())) return;
+        const double n = std::max(1.0, static_cast<double>(boxes.size()));
+        if (++steps_ == 1) return;  // the first builds
+        activity_ += (std::min(happened() / n, 1.0) - activity_) / std::min(steps_ - 1, memory);
+        if (--wait_ > 0 || !(way_ == Way::regions ? activity_ > lively() : activity_ < calm())) return;
         change(boxes);
         patience_ = std::min(2 * patience_, 4096);
         wait_ = patience_;
@@ -31,7 +32,8 @@ private:
 
     // Where one box in a hundred is looked at in each step, that takes as long as comparing all pairs of all lists, and one
     // may go either way. Back only when much less happens: each change costs as much as dozens of steps.
-    static constexpr double lively = 0.01;
+    // In the first steps, while speeds are not known, regions are too large for many boxes in any scene.
+    double lively() const { return steps_ < 4 * memory ? 0.2 : 0.01; }
     double calm() const { return way_ == Way::lists ? 0.001 : 0.1; }
     static constexpr int memory = 16;  // steps
 
@@ -75,7 +77,8 @@ private:
     MovingSearch* moving_ = static_cast<MovingSearch*>(search_.get());  // the same, or none
     double activity_ = 0.0;
     std::int64_t exchanges_ = 0;
-    int patience_ = memory, wait_ = memory;  // steps until the next change
+    int steps_ = 0;
+    int patience_ = memory, wait_ = 3;  // steps until the next change
 };
 
 }  // namespace

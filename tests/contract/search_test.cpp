@@ -397,6 +397,28 @@ TEST_CASE("exchanges are counted: two ends that pass each other are one") {
     }
 }
 
+TEST_CASE("auto goes from safe regions to lists or to sorting and back as the motion asks, without a wrong pair") {
+    for (const int count : {400, 3000}) {
+        Random random(14);
+        Boxes boxes = scattered(random, count, std::sqrt(static_cast<double>(count)));
+        const auto search = make_search("auto"), reference = make_search("dess-fused");
+        std::vector<Pair> found, expected;
+        std::vector<std::string> ways;
+        for (int step = 0; step < 700; ++step) {
+            const double speed = step < 80 || step >= 170 ? 1e-7 : count == 400 ? 0.03 : 0.3;
+            for (Box& box : boxes) box = moved(box, speed * random.normal(), speed * random.normal());
+            search->find(boxes, found);
+            reference->find(boxes, expected);
+            INFO("step " << step << " of " << count << " boxes, " << search->choice());
+            REQUIRE(found == expected);
+            const std::string way = search->choice().substr(0, search->choice().find(','));
+            if (ways.empty() || ways.back() != way) ways.push_back(way);
+        }
+        const std::string mixing = count == 400 ? "isu-separated" : "Verlet lists";
+        CHECK(ways == std::vector<std::string>{"safe regions", mixing, "safe regions"});
+    }
+}
+
 TEST_CASE("an unknown search is refused with the names allowed and the nearest of them") {
     CHECK_THROWS_AS(make_search("octree"), InputError);
     CHECK_THROWS_WITH(make_search("octree"), Catch::Contains("\"octree\"") && Catch::Contains("dess dess-fused direct") &&
