@@ -56,10 +56,9 @@ def check_geometry(scenario: Path, result: Path) -> Run:
 
 def bench_command(options: argparse.Namespace) -> int:
     config = bench.read_config(options.config)
-    page = config.page.read_text(encoding="utf-8")
     if options.quick:
         config = bench.quick(config)
-    bench.fill_page(page, config, [])  # faults of the page before hours of measuring
+    bench.fill_page(config.page.read_text(encoding="utf-8"), config, [])  # faults of the page before hours of measuring
     if options.draw:
         rows = bench.measured(config)
     else:
@@ -76,6 +75,7 @@ def bench_command(options: argparse.Namespace) -> int:
         bench.save_small(figure, config.images / f"{name}.png")
         print(config.images / f"{name}.png")
     written = config.output / config.page.name if options.quick else config.page
+    page = config.page.read_text(encoding="utf-8")  # as it is now: it may have been written on meanwhile
     written.write_text(bench.fill_page(page, config, rows), encoding="utf-8")
     print(written)
     return 0

@@ -149,6 +149,18 @@ def test_what_changed_is_measured_anew_and_only_that(study):
     assert command(study, "--again") == 0 and len(asked(study)) == 2 + 4
 
 
+def test_words_written_while_it_measures_stay_in_the_page(study, monkeypatch):
+    def measure_and_write(*arguments):
+        (study / "page.md").write_text(PAGE.replace("Before", "Meanwhile"))
+        return measure(*arguments)
+
+    measure = bench.measure
+    monkeypatch.setattr(bench, "measure", measure_and_write)
+    assert command(study) == 0
+    page = (study / "page.md").read_text()
+    assert "Meanwhile" in page and "dess / isu" in page
+
+
 def test_long_studies_are_measured_when_asked_for_and_kept(study):
     assert command(study) == 0 and not any(row["study"] == "huge" for row in results(study))
     assert command(study, "--long") == 0

@@ -86,6 +86,7 @@ def _parts(ax: Axes, config: Config, chart: Chart, panel: dict, rows: list) -> b
             _line(ax, line, text, color, mark, "--" if threads else "-", strong=part == "ns_per_block_and_step")
             drawn[text] = line
     _axes(ax, config, config.studies[panel["studies"][0]].varied, "ns_per_block_and_step", panel, drawn)
+    ax.set_ylim(bottom=1)  # ns: less is nothing
     return bool(drawn)
 
 
