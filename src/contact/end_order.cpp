@@ -74,15 +74,19 @@ bool EndOrder::repair(std::span<const Box> boxes, int from, int to, Crossings& m
     // Block by block, so that what was looked at is still near when it is set right; half or twice as many cost the same.
     constexpr int block = 512;
     std::array<int, block + 8> places;
+    int done = from;  // up to here the ends are in order
     for (int next = from + 1; next < to; next += block) {
         const int found = find_disorder(coordinate, tag_.data(), next, std::min(next + block, to), places.data());
-        for (int i = 0; i < found; ++i)
+        for (int i = 0; i < found; ++i) {
+            if (places[i] <= done) continue;  // in a row of equal coordinates every place was found
             for (int place = places[i]; place < to; ++place) {
                 const Sunk sunk = sink(coordinate, place, from, met);
                 if (sunk == Sunk::lost || !worth_it(met.exchanges, static_cast<std::int64_t>(met.noted))) return false;
+                done = place;
                 // The end that is here now is above the one that was: the next one may be below it.
                 if (place + 1 == to || coordinate[2 * tag_[place]] < coordinate[2 * tag_[place + 1]]) break;
             }
+        }
     }
     sort_out(boxes, met);
     return true;
