@@ -27,6 +27,15 @@ double wise_margin(int i, const Box& b, double speed, double typical, double lea
     return varied * std::clamp(std::sqrt(30.0 * speed * size), least * size, 0.6 * size);
 }
 
+std::vector<char> hubs(std::span<const Pair> neighbours, int n) {
+    constexpr int many = 512;
+    std::vector<int> count(n, 0);
+    for (const Pair& pair : neighbours) ++count[pair.a], ++count[pair.b];
+    std::vector<char> hub(n);
+    for (int i = 0; i < n; ++i) hub[i] = count[i] > many;
+    return hub;
+}
+
 void CellGrid::reset(int n, double width, double typical) {
     smallest_ = std::ldexp(typical, -12);
     mask_ = std::bit_ceil(static_cast<std::size_t>(std::max(n, 64))) - 1;

@@ -14,7 +14,7 @@ public:
     virtual std::vector<float> speeds() const = 0;
 
     /// What speeds() of another search told, before the first update.
-    virtual void expect(std::vector<float> speeds) = 0;
+    virtual void expect(const std::vector<float>& speeds) = 0;
 };
 
 /// For boxes that hardly move, or hardly against each other: safe_regions.cpp.

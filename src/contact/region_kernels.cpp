@@ -38,9 +38,9 @@ bool overlapping(const Box& a, const Box& b) {
 }
 
 void compare_plain(std::span<const Box> boxes, WatchedPairs& pairs) {
-    for (std::size_t k = 0; k < pairs.box.size(); ++k) {
-        const std::uint32_t other = pairs.other[k] & ~WatchedPairs::flag;
-        pairs.other[k] = other | (overlapping(boxes[pairs.box[k]], boxes[other]) ? WatchedPairs::flag : 0);
+    for (std::size_t k = 0; k < pairs.size(); ++k) {
+        const auto other = static_cast<std::uint32_t>(pairs.other(k));
+        pairs.others()[k] = other | (overlapping(boxes[pairs.box(k)], boxes[other]) ? WatchedPairs::flag : 0);
     }
 }
 
@@ -84,12 +84,12 @@ constexpr Kernels plain{find_escaped_plain, compare_plain};
 [[gnu::target("avx512f,avx512dq,avx512vl,bmi2")]] void compare_avx512(std::span<const Box> boxes, WatchedPairs& pairs) {
     const __m512d sign = _mm512_setr_pd(0.0, 0.0, -0.0, -0.0, 0.0, 0.0, -0.0, -0.0);
     const __m256i flag = _mm256_set1_epi32(static_cast<int>(WatchedPairs::flag));
-    for (std::size_t k = 0; k < pairs.box.size(); k += 8) {
-        const std::size_t left = pairs.box.size() - k;
+    for (std::size_t k = 0; k < pairs.size(); k += 8) {
+        const std::size_t left = pairs.size() - k;
         const auto present = static_cast<__mmask8>(left >= 8 ? 255u : (1u << left) - 1);  // beyond the last: box 0 twice
-        const __m256i other = _mm256_andnot_si256(flag, _mm256_maskz_loadu_epi32(present, &pairs.other[k]));
+        const __m256i other = _mm256_andnot_si256(flag, _mm256_maskz_loadu_epi32(present, pairs.others() + k));
         alignas(32) std::uint32_t here[8], there[8];
-        _mm256_store_si256(reinterpret_cast<__m256i*>(here), _mm256_maskz_loadu_epi32(present, &pairs.box[k]));
+        _mm256_store_si256(reinterpret_cast<__m256i*>(here), _mm256_maskz_loadu_epi32(present, pairs.boxes() + k));
         _mm256_store_si256(reinterpret_cast<__m256i*>(there), other);
         std::uint32_t smaller = 0;
         for (int p = 0; p < 8; p += 2) {
@@ -104,7 +104,7 @@ constexpr Kernels plain{find_escaped_plain, compare_plain};
         }
         const std::uint32_t all_four = smaller & (smaller >> 1) & (smaller >> 2) & (smaller >> 3);
         const auto overlaps = static_cast<__mmask8>(_pext_u32(all_four, 0x11111111u));
-        _mm256_mask_storeu_epi32(&pairs.other[k], present, _mm256_mask_or_epi32(other, overlaps, other, flag));
+        _mm256_mask_storeu_epi32(pairs.others() + k, present, _mm256_mask_or_epi32(other, overlaps, other, flag));
     }
 }
 

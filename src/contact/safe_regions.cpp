@@ -45,11 +45,6 @@ struct Differences {
     }
 };
 
-double farthest(const Box& a, const Box& b) {
-    return std::max(std::max(std::abs(a.xmin - b.xmin), std::abs(a.xmax - b.xmax)),
-                    std::max(std::abs(a.ymin - b.ymin), std::abs(a.ymax - b.ymax)));
-}
-
 class SafeRegions final : public MovingSearch {
 public:
     void update(std::span<const Box> boxes) override {
@@ -57,7 +52,6 @@ public:
         ++step_;
         if (std::ssize(boxes) != n_) {
             n_ = static_cast<int>(boxes.size());
-            if (std::ssize(track_) != n_) track_.clear();
             rebuild();
         } else {
             view_.follow(boxes_, std::ssize(escaped_) <= n_ / 64);
@@ -79,30 +73,23 @@ public:
         for (int i = 0; i < n_; ++i)
             for (const Neighbour n : lists_.of(i)) {
                 if (n.watch() == Watch::all_bounds || keeper(i, n.box()) != i) continue;
-                if (n.watch() == Watch::one_bound ? reaches(i, n.box()) : n.overlaps()) tell(i, n.box());
+                if (n.watch() == Watch::one_bound ? upper_.overlaps(i, n.box()) : n.overlaps()) tell(i, n.box());
             }
         for (const WatchedPairs& group : watched_)
-            for (std::size_t k = 0; k < group.box.size(); ++k)
-                if (group.overlaps(k)) tell(group.first(k), group.second(k));
+            for (std::size_t k = 0; k < group.size(); ++k)
+                if (group.overlaps(k)) tell(group.box(k), group.other(k));
         sort_pairs(n_, found, pairs);
     }
 
     int looked_at() const override { return static_cast<int>(escaped_.size()); }
-    std::vector<float> speeds() const override {
-        std::vector<float> speeds;
-        for (const Track& track : track_) speeds.push_back(track.speed);
-        return speeds;
-    }
-    void expect(std::vector<float> speeds) override {
-        track_.clear();
-        for (const float speed : speeds) track_.push_back({speed, 0});
-    }
+    std::vector<float> speeds() const override { return regions_.speeds(); }
+    void expect(const std::vector<float>& speeds) override { regions_.expect(speeds); }
 
     std::string choice() const override {
         if (step_ == 0) return {};
         std::size_t watched = 0;
         for (int i = 0; i < n_; ++i) watched += (upper_.beyond[i].x != i) + (upper_.beyond[i].y != i);
-        for (const WatchedPairs& pairs : watched_) watched += pairs.box.size();
+        for (const WatchedPairs& pairs : watched_) watched += pairs.size();
         char text[120];
         std::snprintf(text, sizeof text,
                       "safe regions, %.2g %% of the boxes looked at in a step, %.2g pairs per box watched",
@@ -112,41 +99,19 @@ public:
     }
 
 private:
-    struct Track {
-        float speed = 0.0F;  // m per step: how far a bound went, over the steps it took
-        int since = 0;       // step of the reference
-    };
     // A look costs about as much as 100 comparisons. Half or twice of each number costs up to a tenth more, in slow or in
     // fast scenes.
     static constexpr double patience = 64.0;       // steps that the room of a pair must last, or it is watched
     static constexpr int rest = 64;                // steps between questions whether a pair may be left alone again
     static constexpr double unknown_speed = 2e-5;  // of a block per step, until the first look
     static constexpr int few = 16;                 // boxes whose watched pairs lie together
-    static constexpr int many = 512;  // neighbours that make a hub: to find one of so many takes half a microsecond
 
     // ---- where boxes are, seen from the centre ----------------------------------------------------------------------
 
     Box seen(int i) const { return view_.seen(boxes_[i]); }
 
-    Box reference(int i) const {
-        const float* at = &regions_.at[4 * static_cast<std::size_t>(i)];
-        return {at[0], at[1], at[2], at[3]};
-    }
-
-    void move_reference(int i, const Box& b) {
-        const double speed = this->speed(i, b);
-        track_[i] = {view_.believable(speed) ? static_cast<float>(speed) : 0.0F, step_};
-        float* at = &regions_.at[4 * static_cast<std::size_t>(i)];
-        at[0] = static_cast<float>(b.xmin), at[1] = static_cast<float>(b.ymin);
-        at[2] = static_cast<float>(b.xmax), at[3] = static_cast<float>(b.ymax);
-    }
-
-    /// m per step; b: where box i is now.
-    double speed(int i, const Box& b) const {
-        const Track& track = track_[i];
-        const int steps = step_ - track.since;
-        return steps == 0 ? track.speed : farthest(b, reference(i)) / steps;
-    }
+    Box reference(int i) const { return regions_.reference(i); }
+    void move_reference(int i) { regions_.move(i, seen(i), step_, view_); }
 
     /// Whether a box is so far inside its coarse box that it need not be listed anew.
     static bool stays(const CoarseBox& outer, const Box& b) {
@@ -159,7 +124,7 @@ private:
     }
 
     CoarseBox coarse_box(int i, const Box& b) const {
-        return coarse(b, wise_margin(i, b, track_[i].speed, view_.typical(), 0.06));
+        return coarse(b, wise_margin(i, b, regions_.track[i].speed, view_.typical(), 0.06));
     }
 
     // ---- stages of a step ------------------------------------------------------------------------------------------
@@ -178,7 +143,7 @@ private:
     void look_at(int i, bool reconsider = false) {
         if (!present(boxes_[i])) return take_out(i);
         const Box b = seen(i);
-        move_reference(i, b);
+        move_reference(i);
         if (!grid_.holds(i) || !stays(grid_.box(i), b)) list(i, b);
         set_region(i, reconsider);
     }
@@ -191,7 +156,7 @@ private:
             if (n.watch() == Watch::all_bounds && !reconsider) return;
             radius = std::min(radius, settle(i, mine, n));
         });
-        regions_.radius[i] = view_.ordinary(mine) ? rounded_down(radius) : -1.0F;
+        regions_.close(i, radius, view_);
     }
 
     // Decides how the pair with a neighbour is treated; what that leaves i for its radius, m.
@@ -211,10 +176,10 @@ private:
                     return radius;
                 }
             }
-            const int bound = n.watch() == Watch::one_bound ? watched_bound(i, j) : least;
+            const int bound = n.watch() == Watch::one_bound ? upper_.of(i, j) : least;
             // What looks at the others would cost shall not come near to what is gained.
             const double enough = n.watch() == Watch::one_bound ? needed : 4.0 * needed;
-            if (now.rest(bound) > enough && (n.watch() == Watch::one_bound || free(i, j, bound))) {
+            if (now.rest(bound) > enough && (n.watch() == Watch::one_bound || upper_.free(i, j, bound))) {
                 const double radius = share(mine, j, bound, true, now.rest(bound));
                 if (radius >= 0.0) {
                     if (n.watch() != Watch::one_bound) watch_bound(i, j, bound, overlaps);
@@ -227,7 +192,7 @@ private:
     }
 
     /// m: how far two boxes move in a step, together.
-    double closing(int i, int j) const { return speed(i, seen(i)) + speed(j, seen(j)); }
+    double closing(int i, int j) const { return regions_.speed(i, seen(i), step_) + regions_.speed(j, seen(j), step_); }
 
     // What the pair with j leaves i for its radius, if its differences but `without` are to keep the sign they have;
     // negative if they can change at once. `room`: by how much they have it now.
@@ -237,7 +202,7 @@ private:
         const double taken = std::max(regions_.radius[j], 0.0F);
         if (certain - taken >= 0.5 * room) return certain - taken;
         // The region of j takes too much: it shrinks to a ball within itself, around where j is now.
-        move_reference(j, seen(j));
+        move_reference(j);
         const double kept = regions_.radius[j] - farthest(reference(j), other) - view_.guard();
         other = reference(j);
         certain = this->certain(mine, other, without, positive);
@@ -253,37 +218,9 @@ private:
 
     // ---- pairs that are watched -----------------------------------------------------------------------------------------
 
-    // Bound k of i against j, as in Differences(i, j): even numbers are upper bounds of j, odd ones of i.
-    bool free(int i, int j, int k) const {
-        const int who = k % 2 == 0 ? j : i;
-        return (k < 2 ? upper_.beyond[who].x : upper_.beyond[who].y) == who;
-    }
-
-    int watched_bound(int i, int j) const {
-        const auto &mine = upper_.beyond[i], &other = upper_.beyond[j];
-        return other.x == i ? 0 : mine.x == j ? 1 : other.y == i ? 2 : 3;
-    }
-
-    bool reaches(int i, int j) const {
-        const int k = watched_bound(i, j);
-        const UpperBounds::Reaches here = upper_.reaches[k % 2 == 0 ? j : i];
-        return k < 2 ? here.x : here.y;
-    }
-
     void watch_bound(int i, int j, int k, bool overlaps) {
         set(i, j, overlaps, Watch::one_bound);
-        const int who = k % 2 == 0 ? j : i, other = k % 2 == 0 ? i : j;
-        (k < 2 ? upper_.beyond[who].x : upper_.beyond[who].y) = other;
-        (k < 2 ? upper_.reaches[who].x : upper_.reaches[who].y) = overlaps;
-        upper_.watching[who / 64] |= std::uint64_t{1} << (who % 64);
-    }
-
-    void forget_bound(int i, int j) {
-        auto &mine = upper_.beyond[i], &other = upper_.beyond[j];
-        if (mine.x == j) mine.x = i;
-        if (mine.y == j) mine.y = i;
-        if (other.x == i) other.x = j;
-        if (other.y == i) other.y = j;
+        upper_.watch(i, j, k, overlaps);
     }
 
     void compare() {
@@ -303,8 +240,8 @@ private:
     void reconsider_watched(int group) {
         const WatchedPairs& pairs = watched_[group];
         calm_.clear();
-        for (std::size_t k = 0; k < pairs.box.size(); ++k) {
-            if (calm(pairs.first(k), pairs.second(k))) calm_.push_back(pairs.first(k));
+        for (std::size_t k = 0; k < pairs.size(); ++k) {
+            if (calm(pairs.box(k), pairs.other(k))) calm_.push_back(pairs.box(k));
         }
         std::sort(calm_.begin(), calm_.end());
         calm_.erase(std::unique(calm_.begin(), calm_.end()), calm_.end());
@@ -340,25 +277,15 @@ private:
         if (stores(j, i)) *lists_.find(j, i) = Neighbour(i, overlaps, watch);
         if (watch != Watch::all_bounds) return;
         const int box = keeper(i, j);
-        WatchedPairs& pairs = watched_[box / few];
-        pairs.box.push_back(static_cast<std::uint32_t>(box));
-        pairs.other.push_back(static_cast<std::uint32_t>(i + j - box) | (overlaps ? WatchedPairs::flag : 0));
+        watched_[box / few].add(box, i + j - box, overlaps);
     }
 
     /// The pair is watched no more.
     void forget(int i, int j) {
         const int box = keeper(i, j);
         const Watch watch = lists_.find(box, i + j - box)->watch();
-        if (watch == Watch::one_bound) forget_bound(i, j);
-        if (watch != Watch::all_bounds) return;
-        const auto here = static_cast<std::uint32_t>(box), there = static_cast<std::uint32_t>(i + j - box);
-        WatchedPairs& pairs = watched_[box / few];
-        std::size_t k = 0;
-        while (pairs.box[k] != here || (pairs.other[k] & ~WatchedPairs::flag) != there) ++k;
-        pairs.box[k] = pairs.box.back();
-        pairs.other[k] = pairs.other.back();
-        pairs.box.pop_back();
-        pairs.other.pop_back();
+        if (watch == Watch::one_bound) upper_.forget(i, j);
+        if (watch == Watch::all_bounds) watched_[box / few].remove(box, i + j - box);
     }
 
     template <class Visit>
@@ -403,29 +330,18 @@ private:
             for (const int j : old_) part(i, j);
             grid_.remove(i);
         }
-        move_reference(i, seen(i));
-        track_[i].speed = 0.0F;
-        const Box at = reference(i);
-        const double missing = std::max(at.xmin - at.xmax, at.ymin - at.ymax);  // how far from being present
-        regions_.radius[i] = missing > 0.0 && view_.ordinary(at) ? rounded_down(0.25 * missing) : -1.0F;
+        regions_.leave_out(i, seen(i), step_, view_);
     }
 
     // ---- from nothing ------------------------------------------------------------------------------------------------
 
     void rebuild() {
         view_.choose(boxes_);
-        if (regions_.radius.size() != static_cast<std::size_t>(n_))  // there are no references yet
-            for (Track& track : track_) track.since = step_;
-        regions_.at.resize(4 * static_cast<std::size_t>(n_));
-        regions_.radius.assign(n_, -1.0F);
-        if (track_.empty()) track_.assign(n_, {static_cast<float>(unknown_speed * view_.typical()), step_});
+        if (std::ssize(regions_.radius) != n_) regions_.start(n_, step_, unknown_speed * view_.typical());
         grid_.reset(n_, view_.width(), view_.typical());
         lists_.reset(n_);
         hub_.assign(n_, 0);
-        upper_.reaches.assign(n_, {true, true});
-        upper_.beyond.resize(n_);
-        for (int i = 0; i < n_; ++i) upper_.beyond[i] = {i, i};
-        upper_.watching.assign((n_ + 63) / 64, 0);
+        upper_.reset(n_);
         watched_.assign((n_ + few - 1) / few, {});
         for (int i = 0; i < n_; ++i) {
             if (!present(boxes_[i])) {
@@ -433,13 +349,11 @@ private:
                 continue;
             }
             const Box b = seen(i);
-            move_reference(i, b);
+            move_reference(i);
             grid_.insert(i, coarse_box(i, b));
         }
         const std::vector<Pair> near = grid_.all_overlapping();
-        std::vector<int> neighbours(n_, 0);
-        for (const Pair& pair : near) ++neighbours[pair.a], ++neighbours[pair.b];
-        for (int i = 0; i < n_; ++i) hub_[i] = neighbours[i] > many;
+        hub_ = hubs(near, n_);
         for (const Pair& pair : near) join(pair.a, pair.b);
         for (int i = 0; i < n_; ++i)
             if (grid_.holds(i)) first_region(i);
@@ -454,7 +368,7 @@ private:
             const bool usual = view_.ordinary(mine) && view_.ordinary(reference(j));
             const Differences now(mine, reference(j));
             const double needed = patience * closing(i, j) + view_.guard();
-            int bound = n.watch() == Watch::one_bound ? watched_bound(i, j) : now.smallest();
+            int bound = n.watch() == Watch::one_bound ? upper_.of(i, j) : now.smallest();
             if (n.watch() == Watch::all_bounds) return;
             if (n.watch() == Watch::not_at_all) {
                 const double room = certain(mine, reference(j), -1, n.overlaps());
@@ -462,13 +376,13 @@ private:
                     radius = std::min(radius, 0.5 * room);
                     return;
                 }
-                if (!usual || !(now.rest(bound) > 4.0 * needed) || !free(i, j, bound))
+                if (!usual || !(now.rest(bound) > 4.0 * needed) || !upper_.free(i, j, bound))
                     return set(i, j, n.overlaps(), Watch::all_bounds);
                 watch_bound(i, j, bound, n.overlaps());
             }
             radius = std::min(radius, 0.5 * certain(mine, reference(j), bound, true));
         });
-        if (view_.ordinary(mine)) regions_.radius[i] = rounded_down(radius);
+        regions_.close(i, radius, view_);
     }
 
     std::span<const Box> boxes_;  // during update() only
@@ -476,7 +390,6 @@ private:
     Viewpoint view_;
 
     Regions regions_;
-    std::vector<Track> track_;
     CellGrid grid_;  // coarse boxes
     NeighbourLists lists_;
     UpperBounds upper_;

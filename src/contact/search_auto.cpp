@@ -44,14 +44,14 @@ private:
     }
 
     void change(std::span<const Box> boxes) {
-        std::vector<float> speeds = moving_ ? moving_->speeds() : std::vector<float>{};
+        const std::vector<float> speeds = moving_ ? moving_->speeds() : std::vector<float>{};
         way_ = way_ != Way::regions ? Way::regions : few(boxes, speeds) ? Way::sorting : Way::lists;
         if (way_ == Way::sorting) {
             moving_ = nullptr;
             search_ = make_isu_separated_search();
         } else {
             auto next = way_ == Way::regions ? make_safe_regions() : make_verlet_lists();
-            next->expect(std::move(speeds));
+            next->expect(speeds);
             moving_ = next.get();
             search_ = std::move(next);
         }
