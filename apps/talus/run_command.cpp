@@ -81,8 +81,9 @@ void print_scene(const Simulation& simulation) {
         for (BlockId b = 0; b < model.blocks.size(); ++b) n += model.blocks.held(b);
         return n;
     }();
-    std::printf("%s\n%d blocks (%d held), %d convex parts, solver explicit, search %s, %d thread%s\n",
+    std::printf("%s\n%d blocks (%d held), %d convex parts, solver %s, search %s, %d thread%s\n",
                 simulation.scenario().title.c_str(), model.blocks.size(), held, model.parts.size(),
+                simulation.stage().solver.c_str(),
                 simulation.scenario().run.search.c_str(), simulation.scenario().run.threads,
                 simulation.scenario().run.threads == 1 ? "" : "s");
     for (const std::string& warning : simulation.report().warnings) std::printf("warning: %s\n", warning.c_str());

@@ -39,9 +39,10 @@ std::vector<JointSpec> convert_changes(const Cursor& changes, Value& joints) {
     return all;
 }
 
-StageSpec convert_stage(const Cursor& at, Value& joints) {
+StageSpec convert_stage(const Cursor& at, const std::string& solver_of_run, Value& joints) {
     StageSpec stage;
     stage.name = at["name"].text();
+    stage.solver = at["solver"].given() ? at["solver"].text() : solver_of_run;
     stage.settle = at["settle"].yes();
     stage.reset = at["reset"].yes();
     for (const Cursor& selector : at["delete"].items()) stage.remove.push_back(convert_selector(selector));
@@ -66,8 +67,9 @@ std::vector<StageSpec> convert_stages(const Cursor& scenario) {
     std::vector<StageSpec> all;
     std::set<std::string> names;
     Value joints = scenario["joints"].value();
+    const std::string solver = scenario["run"]["solver"].text();
     for (const Cursor& at : scenario["stages"].items()) {
-        all.push_back(convert_stage(at, joints));
+        all.push_back(convert_stage(at, solver, joints));
         if (!names.insert(all.back().name).second) at["name"].fault("a stage of this name is there already");
     }
     return all;

@@ -197,6 +197,7 @@ struct RunSpec {
 
 struct StageSpec {  // in order, before `run`
     std::string name;
+    std::string solver = "auto";
     bool settle = false;                 // local damping 0.8 until equilibrium 1e-6, then reset
     bool reset = false;                  // afterwards clock, displacements and velocities become zero
     std::vector<Selector> remove;        // key: delete

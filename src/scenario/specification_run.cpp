@@ -24,6 +24,8 @@ Shape damping() {
 
 Shape time_step() { return either({choice({"auto"}), number("s", positive)}); }
 
+Shape solver() { return choice({"auto", "explicit"}, {"rigid", "static"}); }
+
 Shape change() {
     return table("change", "New values that hold from the start of the stage to the end of the run.",
                  {{"joints", names_of(joint_change()), fallback("{}"), "joints by name, with the keys that change"}});
@@ -73,6 +75,7 @@ Shape stage() {
     return table(
         "stage", "What happens before `run`. Changed joints and deleted blocks stay; all else holds in this stage only.",
         {{"name", text(), derived("stage1, stage2, ..."), "name in reports"},
+         {"solver", solver(), derived("that of `run`"), "how motion is integrated in this stage"},
          {"settle", boolean(), fallback("false"),
           "fills in `damping.local` 0.8, `until.equilibrium` 1e-6 and `reset` true, unless they are given"},
          {"reset", boolean(), fallback("false"), "afterwards clock, velocities and displacements are zero"},
@@ -92,7 +95,7 @@ Shape run() {
         "run", "The last stage, and how to compute. `search`, `skin` and `threads` never change a result.",
         {{"until", until(), optional,
           "when the run ends; must be given unless there are stages, of which the last is then the end"},
-         {"solver", choice({"auto", "explicit"}, {"rigid", "static"}), fallback("auto"), "how motion is integrated"},
+         {"solver", solver(), fallback("auto"), "how motion is integrated"},
          {"time_step", time_step(), fallback("auto"), "automatic: a share of the rigorous bound"},
          {"step_fraction", number("1", positive), fallback("0.8"), "share of the rigorous bound in an automatic step"},
          {"unchecked", boolean(), fallback("false"), "accept a time step above the stable estimate"},

@@ -34,7 +34,7 @@ RunInfo run_info(const Simulation& simulation, const std::vector<std::string>& o
     info.source = scenario.source;
     info.canonical_json = scenario.canonical_json;
     info.files = scenario.files;
-    info.solver = "explicit";
+    info.solver = simulation.stage().solver;
     info.search = scenario.run.search;
     info.threads = scenario.run.threads;
     info.skin = simulation.skin();

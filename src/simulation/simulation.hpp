@@ -77,6 +77,20 @@ public:
     void drop_scratch();
 
 private:
+    /// A way to advance, by the name it has in a scenario.
+    struct Method {
+        const char* name;
+        /// Brings contacts and the forces of now up to date, at the start of a stage and before blocks are deleted; 0 = no
+        /// slip.
+        void (Simulation::*forces)(double dt);
+        void (Simulation::*begin)();          // of a stage: chooses state_.stage_step, or refuses
+        void (Simulation::*step)(double dt);  // moves state_ on by dt, with time, ledger and speed_
+    };
+    const Method& method() const;  // of this stage
+
+    void begin_explicit();
+    void step_explicit(double dt);
+
     void apply_stage();  // what a stage changes in the model; idempotent
     void delete_blocks();
     void check_stages() const;

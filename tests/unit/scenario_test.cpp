@@ -192,6 +192,11 @@ TEST_CASE("a stage that changes a joint keeps its other values, also those of ea
     CHECK_FALSE(s.stages[2].loads_given);
 }
 
+TEST_CASE("a stage that names no solver has that of the run") {
+    CHECK(read(full_scenario).stages[1].solver == "explicit");
+    CHECK(read("stages: [{name: first, settle: true}]\n" + small_scenario).stages[0].solver == "auto");
+}
+
 TEST_CASE("run and record are read, and absent values stay automatic") {
     const Scenario s = read(full_scenario);
     CHECK(s.run.until.time == 2.0);
