@@ -36,7 +36,7 @@ SearchBench bench_of(const BenchSearchArguments& arguments) {
 
 Trajectory record(const Scenario& scenario, const std::string& scene, const BenchSearchArguments& arguments) {
     StatusLine line;
-    Trajectory trajectory = record_boxes(scenario, {arguments.steps, arguments.every, arguments.from},
+    Trajectory trajectory = record_boxes(scenario, {arguments.steps, arguments.every, arguments.from, arguments.axes_deg},
                                          [&](const std::string& now) { line.show(scene + ": " + now); });
     line.clear();
     return trajectory;

@@ -40,6 +40,7 @@ struct BenchSearchArguments {
     std::vector<double> skins{0.0};  // m
     int steps = 200, every = 1, repeat = 5;
     std::string from, record, csv;
+    std::optional<double> axes_deg;  // absent: as in a run
     bool no_check = false, check_direct = false, force = false;
 };
 int bench_search_command(const BenchSearchArguments& arguments);

@@ -41,6 +41,8 @@ void add_bench_search(CLI::App& bench_app, BenchSearchArguments& search, std::fu
     search_app->add_option("--every", search.every, "time steps of the run from one recorded step to the next; default 1");
     search_app->add_option("--from", search.from,
                            "record from this time (s, as results count it) or stage; default the last stage");
+    search_app->add_option("--axes", search.axes_deg,
+                           "degrees from x and y along which boxes are taken; default as in a run: turned away from joints");
     search_app
         ->add_option("--methods", search.methods, "names with commas; `read`: the bound; none: record only; default all")
         ->delimiter(',');

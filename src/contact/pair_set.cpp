@@ -1,6 +1,7 @@
 #include "contact/pair_set.hpp"
 
 #include <algorithm>
+#include <span>
 #include <utility>
 
 namespace talus {
@@ -75,15 +76,35 @@ void PairSet::list(std::vector<Pair>& pairs) const {
     pairs.resize(count);
 }
 
+namespace {
+
+constexpr int many = 32;  // where comparing all with all begins to cost more
+
+void insertion_sort(std::span<Pair> of_one_box) {
+    for (std::size_t k = 1; k < of_one_box.size(); ++k) {
+        const Pair next = of_one_box[k];
+        std::size_t to = k;
+        for (; to > 0 && of_one_box[to - 1].b > next.b; --to) of_one_box[to] = of_one_box[to - 1];
+        of_one_box[to] = next;
+    }
+}
+
+}  // namespace
+
 void sort_pairs(std::size_t boxes, std::span<const Pair> pairs, std::vector<Pair>& sorted) {
-    std::vector<int> place_a(boxes), place_b(boxes);
-    for (const Pair& pair : pairs) ++place_a[pair.a], ++place_b[pair.b];
-    for (auto* places : {&place_a, &place_b})
-        for (int next = 0; int& place : *places) next += std::exchange(place, next);
-    std::vector<Pair> by_b(pairs.size());
-    for (const Pair& pair : pairs) by_b[place_b[pair.b]++] = pair;
+    std::vector<int> place(boxes);
+    for (const Pair& pair : pairs) ++place[pair.a];
+    for (int next = 0; int& first : place) next += std::exchange(first, next);
     sorted.resize(pairs.size());
-    for (const Pair& pair : by_b) sorted[place_a[pair.a]++] = pair;  // keeps the order of b
+    for (const Pair& pair : pairs) sorted[place[pair.a]++] = pair;
+    int begin = 0;
+    for (const int end : place) {  // a few each, but those of a hub
+        if (end - begin > many)
+            std::sort(sorted.begin() + begin, sorted.begin() + end, [](Pair x, Pair y) { return x.b < y.b; });
+        else
+            insertion_sort({sorted.data() + begin, sorted.data() + end});
+        begin = end;
+    }
 }
 
 }  // namespace talus

@@ -59,8 +59,7 @@ private:
     std::vector<FewIds> larger_;  // [number of boxes]
 };
 
-/// Sorts pairs of boxes numbered from 0 to `boxes`, less than 2^31 of them, each given once: by counting, without one
-/// comparison.
+/// Sorts pairs of boxes numbered from 0 to `boxes`, less than 2^31 of them, each given once.
 void sort_pairs(std::size_t boxes, std::span<const Pair> pairs, std::vector<Pair>& sorted);
 
 }  // namespace talus

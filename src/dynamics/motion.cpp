@@ -69,6 +69,7 @@ bool place(const Model& model, const Motion& motion, double skin, Placed& placed
     const Vec2 *arm = model.corners.arm.data(), *normal = model.corners.normal.data();
     const int *first_part = model.blocks.first_part.data(), *first_corner = model.parts.first_corner.data();
     PlacedCorner* corner = placed.corner.data();
+    const Vec2 axis = model.box_axis;
     bool left = all;
     constexpr int few = 64;
 #pragma omp parallel for schedule(static) reduction(|| : left)
@@ -85,7 +86,7 @@ bool place(const Model& model, const Motion& motion, double skin, Placed& placed
             const int b = begin + i;
             const Vec2 position = motion.position[b];
             placed.block[b] = {position, motion.velocity[b], motion.spin[b]};
-            if (!all) inside &= placed.boxed[b].moved(position, motion.angle[b]) <= skin;
+            if (!all) inside &= placed.boxed[b].moved(position, motion.angle[b], axis) <= skin;
             if (!all && model.blocks.inv_inertia[b] == 0.0 && motion.spin[b] == 0.0) continue;
             const double cosine = c[i], sine = s[i];
             for (int k = first_corner[first_part[b]]; k < first_corner[first_part[b + 1]]; ++k) {

@@ -1,6 +1,7 @@
 #include "model/build.hpp"
 
 #include "core/text.hpp"
+#include "model/box_axes.hpp"
 #include "model/initial_stress.hpp"
 #include "model/joints.hpp"
 #include "model/neighbours.hpp"
@@ -230,6 +231,7 @@ Scene Builder::build() {
     throw_faults();
 
     corner_ = fill_blocks(shapes_, density_, model_);
+    model_.box_axis = box_axis(model_.corners);
     hold();
     fill_joint_tables(scenario_, model_, faults_);
     find_touching_parts();

@@ -104,6 +104,7 @@ struct Model {
     double contact_damping = 0.0;    // s
     double release_time = 0.0;       // s over which the forces of deleted blocks fade in this stage
     bool face_path = true;
+    Vec2 box_axis = Vec2::UnitX();  // unit, the first axis along which boxes of parts are taken, see box_axes.hpp
 
     int cells() const { return faces.empty() ? 0 : faces.back().first_cell + joints[faces.back().joint].cells; }
     /// Joint acting between two parts: named blocks, then the joint set that cut them, then materials, then the default.

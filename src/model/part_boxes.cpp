@@ -5,11 +5,13 @@ namespace {
 
 constexpr Box absent{1.0, 1.0, -1.0, -1.0};
 
-Box part_box(const Model& model, const Placed& placed, PartId p, const Vec2& at) {
-    Vec2 low = placed.corner[model.parts.first_corner[p]].arm, high = low;
+Box part_box(const Model& model, const Placed& placed, PartId p, const Vec2& position) {
+    const Vec2 at = along(model.box_axis, position);
+    Vec2 low = along(model.box_axis, placed.corner[model.parts.first_corner[p]].arm), high = low;
     for (int k = model.parts.first_corner[p] + 1; k < model.parts.first_corner[p + 1]; ++k) {
-        low = low.cwiseMin(placed.corner[k].arm);
-        high = high.cwiseMax(placed.corner[k].arm);
+        const Vec2 arm = along(model.box_axis, placed.corner[k].arm);
+        low = low.cwiseMin(arm);
+        high = high.cwiseMax(arm);
     }
     return {low.x() + at.x(), low.y() + at.y(), high.x() + at.x(), high.y() + at.y()};
 }
@@ -38,7 +40,7 @@ int rebox(const Model& model, const State& state, double skin, Placed& placed, s
     for (BlockId b = 0; b < nb; ++b) {
         const Vec2& at = state.motion.position[b];
         const double angle = state.motion.angle[b];
-        reboxed[b] = all || !(placed.boxed[b].moved(at, angle) <= kept_share * skin);
+        reboxed[b] = all || !(placed.boxed[b].moved(at, angle, model.box_axis) <= kept_share * skin);
         if (!reboxed[b]) continue;
         ++count;
         placed.boxed[b] = {at, angle, model.blocks.radius[b]};

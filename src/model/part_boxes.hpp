@@ -10,7 +10,8 @@
 
 namespace talus {
 
-/// [np] m, closed around the corners; that of a part whose block was removed is {1, 1, -1, -1}. `placed` must be up to date.
+/// [np] m, closed around the corners, along the axes of Model::box_axis; that of a part whose block was removed is {1, 1,
+/// -1, -1}. `placed` must be up to date.
 void part_boxes(const Model& model, const State& state, const Placed& placed, std::vector<Box>& boxes);
 
 /// Blocks that have moved by more than this share of the skin get new boxes together with the one that left its own: each

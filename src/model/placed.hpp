@@ -20,16 +20,21 @@ struct PlacedBlock {
     double spin;              // rad/s
 };
 
+/// A vector in the frame of the axes of boxes, of which the first is given; exact if that is x.
+inline Vec2 along(const Vec2& axis, const Vec2& v) {
+    return {axis.x() * v.x() + axis.y() * v.y(), axis.x() * v.y() - axis.y() * v.x()};
+}
+
 /// Where a block was when it got its boxes: all that is read, in one stream, to see whether it is still in them.
 struct Boxed {
     Vec2 position;  // m
     double angle;   // rad
     double radius;  // m, of the block
 
-    /// m, no less than any point of the block has moved along x or y.
-    double moved(const Vec2& to_position, double to_angle) const {
-        const double x = std::abs(to_position.x() - position.x()), y = std::abs(to_position.y() - position.y());
-        return std::max(x, y) + std::abs(to_angle - angle) * radius;
+    /// m, no less than any point of the block has moved along one of the axes of boxes.
+    double moved(const Vec2& to_position, double to_angle, const Vec2& axis) const {
+        const Vec2 way = along(axis, to_position - position);
+        return std::max(std::abs(way.x()), std::abs(way.y())) + std::abs(to_angle - angle) * radius;
     }
 };
 

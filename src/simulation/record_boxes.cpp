@@ -2,13 +2,22 @@
 
 #include "core/errors.hpp"
 
+#include <cmath>
+#include <numbers>
+#include <utility>
+
 namespace talus {
 
 Trajectory record_boxes(const Scenario& scenario, const RecordBoxes& what, const Say& say) {
     if (what.steps < 1) throw InputError("steps: " + std::to_string(what.steps) + " is not 1 or more");
     if (what.every < 1) throw InputError("every: " + std::to_string(what.every) + " is not 1 or more");
     const Moment from(scenario, what.from);
-    Simulation simulation(scenario, build(scenario));
+    Scene scene = build(scenario);
+    if (what.axes_deg) {
+        const double angle = *what.axes_deg * std::numbers::pi / 180.0;
+        scene.model.box_axis = {std::cos(angle), std::sin(angle)};
+    }
+    Simulation simulation(scenario, std::move(scene));
     Trajectory trajectory;
     trajectory.boxes = simulation.model().parts.size();
     check_trajectory_fits(std::to_string(trajectory.boxes) + " boxes x " + std::to_string(what.steps) + " steps",

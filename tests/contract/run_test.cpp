@@ -67,8 +67,7 @@ struct Trace {
 };
 
 template <class AfterStep>
-Trace trace(const Scenario& scenario, AfterStep after_step) {
-    WholeRun run(scenario);
+Trace trace(WholeRun run, AfterStep after_step) {
     Trace found;
     run.to_the_end([&](WholeRun& r) {
         if (r.state().total_steps % look == 0) found.hashes.push_back(state_hash(r.model(), r.state()));
@@ -81,7 +80,7 @@ Trace trace(const Scenario& scenario, AfterStep after_step) {
 }
 
 Trace trace(const Scenario& scenario) {
-    return trace(scenario, [](WholeRun&) {});
+    return trace(WholeRun(scenario), [](WholeRun&) {});
 }
 
 const Trace& reference() {
@@ -137,6 +136,16 @@ TEST_CASE("one hash for every search, number of threads and skin") {
         }
 }
 
+TEST_CASE("one hash for any axes along which boxes are taken") {
+    for (const double angle : {0.0, 0.5}) {  // rad
+        const Scenario scenario = scenario_of(slope);
+        Scene scene = build(scenario);
+        scene.model.box_axis = {std::cos(angle), std::sin(angle)};
+        CAPTURE(angle);
+        CHECK(trace(WholeRun(scenario, std::move(scene)), [](WholeRun&) {}).hashes == reference().hashes);
+    }
+}
+
 TEST_CASE("one hash where few blocks are fast and the rest stays, and only those are looked at again") {
     const Trace expected = trace(scenario_of(stones));
     for (const char* search : search_names())
@@ -163,7 +172,7 @@ TEST_CASE("one hash where few blocks are fast and the rest stays, and only those
 TEST_CASE("scratch may be thrown away at any step") {
     Random random(11);
     int dropped = 0;
-    const Trace found = trace(scenario_of(slope), [&](WholeRun& r) {
+    const Trace found = trace(WholeRun(scenario_of(slope)), [&](WholeRun& r) {
         if (random.bits() % 20 != 0) return;
         r.simulation().drop_scratch();
         ++dropped;
@@ -178,7 +187,7 @@ TEST_CASE("a run saved in the middle of its stages and read back goes on as if i
     Random random(7);
     std::set<int> stages;
     int restarts = 0;
-    const Trace found = trace(scenario_of(slope), [&](WholeRun& r) {
+    const Trace found = trace(WholeRun(scenario_of(slope)), [&](WholeRun& r) {
         if (random.bits() % 60 != 0) return;
         write_restart(path, RestartInfo{}, r.state());
         State saved = read_restart(path, r.model());

@@ -113,7 +113,7 @@ run: {until: {time: 0.5}, time_step: 1e-2, unchecked: true}
     const auto fall = [](double t) { return -5.0 * t * t; };
     const auto lowest = [](const Trajectory& t, std::size_t f) { return t.step(f)[1].ymin; };
 
-    const Trajectory all = record_boxes(scenario, {1000, 1, "0"}, nobody);
+    const Trajectory all = record_boxes(scenario, {1000, 1, "0", 0.0}, nobody);
     REQUIRE(all.boxes == 2);
     REQUIRE(all.steps() == 101);  // the end of the first stage is not recorded twice
     CHECK(all.dt == Approx(0.01));
@@ -122,13 +122,18 @@ run: {until: {time: 0.5}, time_step: 1e-2, unchecked: true}
     CHECK(all.step(100)[1].xmax == 2.0);
     CHECK(all.step(100)[0].ymax == -19.0);
 
-    const Trajectory part = record_boxes(scenario, {5, 10, "0.2"}, nobody);
+    const Trajectory part = record_boxes(scenario, {5, 10, "0.2", 0.0}, nobody);
     REQUIRE(part.steps() == 5);
     CHECK(part.dt == Approx(0.1));
     for (std::size_t f = 0; f < 5; ++f) CHECK(lowest(part, f) == Approx(fall(0.2 + 0.1 * f)).margin(1e-9));
 
     for (const char* last : {"run", ""})
-        CHECK(lowest(record_boxes(scenario, {1, 1, last}, nobody), 0) == Approx(fall(0.5)).margin(1e-9));
+        CHECK(lowest(record_boxes(scenario, {1, 1, last, 0.0}, nobody), 0) == Approx(fall(0.5)).margin(1e-9));
+
+    const Trajectory turned = record_boxes(scenario, {1, 1, "0", 30.0}, nobody);
+    const Box box = turned.step(0)[1];
+    CHECK(box.xmax - box.xmin == Approx(std::sqrt(3.0) + 0.5));
+    CHECK(box.ymax - box.ymin == Approx(1.0 + 0.5 * std::sqrt(3.0)));
     CHECK_THROWS_WITH(record_boxes(scenario, {1, 1, "3"}, nobody), Catch::Contains("the run ends at t = 1 s, before 3"));
     CHECK_THROWS_WITH(record_boxes(scenario, {1, 1, "settle"}, nobody), Catch::Contains("there are: first, run"));
     CHECK_THROWS_WITH(record_boxes(scenario, {2'000'000'000, 1, ""}, nobody), Catch::Contains("too much for memory"));

@@ -12,7 +12,8 @@ namespace talus::test {
 /// A simulation that can be replaced while it runs, by one that goes on from its saved state.
 class WholeRun {
 public:
-    explicit WholeRun(const Scenario& scenario) { simulation_.emplace(scenario, build(scenario)); }
+    explicit WholeRun(const Scenario& scenario) : WholeRun(scenario, build(scenario)) {}
+    WholeRun(const Scenario& scenario, Scene scene) { simulation_.emplace(scenario, std::move(scene)); }
 
     /// To the end of the last stage; `after_step(*this)` is called after every step.
     template <class AfterStep>

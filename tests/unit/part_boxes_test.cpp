@@ -6,7 +6,9 @@
 #include "support/catch.hpp"
 #include "support/scenes.hpp"
 
+#include <cmath>
 #include <limits>
+#include <numbers>
 
 using namespace talus;
 using namespace talus::scenes;
@@ -23,7 +25,8 @@ struct Boxes {
     std::vector<Box> boxes;
     std::vector<std::uint8_t> reboxed;
 
-    Boxes() {
+    explicit Boxes(const Vec2& axis = Vec2::UnitX()) {
+        scene.model.box_axis = axis;
         place_all();
         renew();
     }
@@ -85,7 +88,8 @@ TEST_CASE("only blocks that left their boxes, or soon will, get new ones") {
 
 TEST_CASE("every part stays within its box as long as no block is said to have left") {
     Random random(3);
-    Boxes b;
+    const double turned = GENERATE(0.0, 0.3);  // rad
+    Boxes b(Vec2(std::cos(turned), std::sin(turned)));
     int kept = 0, renewed = 0;
     for (int step = 0; step < 2000; ++step) {
         for (BlockId k = 0; k < 2; ++k) {
@@ -102,4 +106,36 @@ TEST_CASE("every part stays within its box as long as no block is said to have l
     }
     CHECK(kept > 100);
     CHECK(renewed > 10);
+}
+
+TEST_CASE("boxes along turned axes are those of the turned parts") {
+    const double angle = 0.3;
+    const Boxes b(Vec2(std::cos(angle), std::sin(angle)));
+    const double side = 2.0 * (std::cos(angle) + std::sin(angle)) + 2.0 * skin;
+    CHECK(b.boxes[0].xmax - b.boxes[0].xmin == Approx(side));
+    CHECK(b.boxes[0].ymax - b.boxes[0].ymin == Approx(side));
+    CHECK(0.5 * (b.boxes[0].xmin + b.boxes[0].xmax) == Approx(std::cos(angle) + std::sin(angle)));
+    CHECK(0.5 * (b.boxes[0].ymin + b.boxes[0].ymax) == Approx(std::cos(angle) - std::sin(angle)));
+}
+
+TEST_CASE("axes of boxes turn away from edges along x and y, and from nothing else") {
+    const auto axis_deg = [](double first_deg, double second_deg, double length) {  // a parallelogram
+        const auto side = [](double deg, double size) {
+            const double angle = deg * std::numbers::pi / 180.0;
+            return Vec2(size * std::cos(angle), size * std::sin(angle));
+        };
+        const Vec2 a = side(first_deg, length), b = side(second_deg, 1.0);
+        const Scene scene = build(with({block("sheared", {Vec2(0, 0), a, Vec2(a + b), b})}));
+        return std::atan2(scene.model.box_axis.y(), scene.model.box_axis.x()) * 180.0 / std::numbers::pi;
+    };
+    CHECK(axis_deg(17.0, 107.0, 1.0) == 0.0);
+    CHECK(axis_deg(-45.0, 45.0, 1.0) == 0.0);
+    CHECK(axis_deg(4.0, 80.0, 1.0) == 0.0);
+    for (const double deg : {0.0, 1.0, -2.0, 90.0}) {
+        const double turned = axis_deg(deg, deg + 90.0, 3.0);
+        CHECK(std::abs(turned - deg + (deg == 90.0 ? 90.0 : 0.0)) > 2.5);
+        CHECK(std::abs(turned) < 8.0);  // boxes grow with it
+    }
+    CHECK(std::abs(axis_deg(0.0, 60.0, 1.0)) > 2.5);
+    CHECK(axis_deg(30.0, 90.0, 500.0) == 0.0);  // hardly any of it lies along y
 }

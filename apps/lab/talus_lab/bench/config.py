@@ -45,6 +45,7 @@ class Study:
     steps: Any = 60  # may be a formula
     repeat: int = 3
     rounds: int = 1  # command step: all methods in turn, so many times; the fastest counts
+    axes: Any = ""  # degrees from x and y, of the boxes that are searched; as in a run if empty
     check: bool = False  # compare the pairs of every step with a reference
     long: bool = False  # measured only when asked for
 
@@ -199,6 +200,8 @@ def _study_faults(config: Config, study: Study, where: str) -> list[str]:
         faults += _strangers(study.methods, (*METHODS, "read"), f"{where}.methods")
     if len(study.vary) != 1 or not isinstance(study.values, list) or not study.values:
         return faults + [f"{where}.vary: is not one quantity with a list of values"]
+    if study.axes != "" and (study.command == "step" or not isinstance(study.axes, (int, float))):
+        faults.append(f"{where}.axes: is a number of degrees, and not for the command step")
     for scene in study.scenes:
         if scene in config.scenes:
             faults += _strangers([study.varied, *study.fixed], config.scenes[scene].set, f"{where}, scene {scene}")

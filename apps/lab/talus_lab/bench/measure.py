@@ -100,7 +100,8 @@ def measure_point(config: Config, point: Point, programs: Programs) -> list[Row]
     keys, start, steps = overrides(config, point.scene, study, point.value)
     scenario = str((config.path.parent / config.scenes[point.scene].scenario).resolve())
     sets = [word for key, value in keys.items() for word in ("--set", f"{key}={value}")]
-    begin = [*sets, *(["--from", start] if start else []), "--steps", str(steps)]
+    axes = ["--axes", str(study.axes)] if study.axes != "" else []
+    begin = [*sets, *(["--from", start] if start else []), *axes, "--steps", str(steps)]
     methods = _within_reach(config, study, point)
     with tempfile.TemporaryDirectory() as folder:
         run = {"search": _search, "step": _step, "peers": _peers}[study.command]
