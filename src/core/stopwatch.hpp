@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <ctime>
 
 namespace talus {
 
@@ -18,6 +19,15 @@ public:
 private:
     using Clock = std::chrono::steady_clock;
     Clock::time_point start_;
+};
+
+/// CPU time of all threads of the process: what other programs do meanwhile does not count.
+class CpuStopwatch {
+public:
+    double seconds() const { return static_cast<double>(std::clock() - start_) / CLOCKS_PER_SEC; }
+
+private:
+    std::clock_t start_ = std::clock();
 };
 
 }  // namespace talus

@@ -163,6 +163,7 @@ void ResultsWriter::finish(const RunSummary& summary) {
     append_histories();
     file_.set("/talus", "status", summary.status);
     file_.set("/talus", "wall_time", summary.wall_time);
+    file_.set("/talus", "cpu_time", summary.cpu_time);
     file_.set("/talus", "steps", summary.steps);
     file_.set("/talus", "end_time", summary.end_time);
     file_.set("/talus", "energy_gain", summary.energy_gain);

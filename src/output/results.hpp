@@ -37,6 +37,7 @@ struct RunInfo : ScenarioInfo {  // provenance: enough to run the same again
 struct RunSummary {
     std::string status;      // complete | interrupted | diverged | stopped | refused
     double wall_time = 0.0;  // s
+    double cpu_time = 0.0;   // s, of all threads, from the first step on and without recording
     std::int64_t steps = 0;
     double end_time = 0.0;     // s
     double energy_gain = 0.0;  // 1

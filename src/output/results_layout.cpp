@@ -54,6 +54,7 @@ void write_provenance(h5::File& file, const Model& model, const RunInfo& info) {
     file.set("/talus", "stable_estimate", info.stable_estimate);
     file.set("/talus", "status", status_while_running);
     file.set("/talus", "wall_time", 0.0);
+    file.set("/talus", "cpu_time", 0.0);
     file.set("/talus", "steps", std::int64_t{0});
     file.set("/talus", "end_time", 0.0);
     file.set("/talus", "energy_gain", 0.0);

@@ -106,8 +106,10 @@ void Recorder::add_histories(const Simulation& simulation) {
 }
 
 void Recorder::write_frame(const Simulation& simulation, const State& state) {
+    const CpuStopwatch recording;
     writer_.frame(simulation.model(), state, simulation.energies());
     last_frame_time_ = state.time;
+    cpu_of_recording_ += recording.seconds();
 }
 
 void Recorder::frame_and_restart(const Simulation& simulation) {
@@ -146,20 +148,24 @@ void Recorder::end_stage(const Simulation& simulation) {
 }
 
 void Recorder::save_restart(const Simulation& simulation) {
+    const CpuStopwatch recording;
     writer_.flush();
     info_.frames = writer_.frames();
     info_.history_rows = writer_.history_rows();
     write_restart(restart_file(), info_, simulation.state());
     restart_written_ = true;
     since_restart_.lap();
+    cpu_of_recording_ += recording.seconds();
 }
 
 void Recorder::finish(const Simulation& simulation, const std::string& status, double wall_time) {
+    const double cpu_time = cpu_.seconds() - cpu_of_recording_;
     if (status != "diverged" && status != "refused") save_restart(simulation);
-    writer_.finish({status, wall_time, simulation.state().total_steps, simulation.state().time, simulation.energy_gain()});
+    writer_.finish(
+        {status, wall_time, cpu_time, simulation.state().total_steps, simulation.state().time, simulation.energy_gain()});
 }
 
-void Recorder::close(const std::string& status) { writer_.finish({status, 0.0, 0, 0.0, 0.0}); }
+void Recorder::close(const std::string& status) { writer_.finish({status, 0.0, 0.0, 0, 0.0, 0.0}); }
 
 std::string Recorder::restart_file() const { return restart_path(path()); }
 

@@ -53,6 +53,8 @@ private:
     double frame_every_ = 0.0;       // s; 0: only at the ends of stages
     double last_frame_time_ = -1.0;  // s
     Stopwatch since_restart_;
+    CpuStopwatch cpu_;
+    double cpu_of_recording_ = 0.0;  // s
     bool restart_written_ = false;
 };
 

@@ -88,7 +88,7 @@ TEST_CASE("provenance reads back") {
     {
         ResultsWriter writer(folder / "run.h5", model, info);
         CHECK(ResultsReader(folder / "run.h5").status() == "in progress");
-        writer.finish({"interrupted", 12.5, 3000000000, 1.5});
+        writer.finish({"interrupted", 12.5, 11.5, 3000000000, 1.5});
     }
     const ResultsReader reader(folder / "run.h5");
     CHECK(reader.scenario_text() == info.scenario_text);
@@ -101,6 +101,7 @@ TEST_CASE("provenance reads back") {
     const std::map<std::string, std::string> attributes(list.begin(), list.end());
     CHECK(attributes.at("origin") == "450000.25 6500000.5");
     CHECK(attributes.at("scenario_hash") == "0123456789abcdef");
+    CHECK(attributes.at("cpu_time") == "11.5");
     CHECK(attributes.at("steps") == "3000000000");
     CHECK(attributes.at("time_step") == "1e-05");
     CHECK(attributes.at("source") == "");
