@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import argparse
+import json
 import subprocess
 import sys
 import tempfile
 from pathlib import Path
+from types import ModuleType
 
 import talus_lab
-from talus_lab import bench, plot
+from talus_lab import bench, chart, plot
+from talus_lab.chart.exchange import cut, scene_json
 from talus_lab.program import find_talus
 from talus_lab.run import ResultError, Run, open_run
+from talus_lab.study.picture import save_small
 
 BAD_INPUT = 2  # exit code for anything the user gave, as in talus
 INTERRUPTED = 130
@@ -54,35 +58,48 @@ def check_geometry(scenario: Path, result: Path) -> Run:
     return open_run(result)
 
 
-def bench_command(options: argparse.Namespace) -> int:
-    config = bench.read_config(options.config)
+def scene_command(options: argparse.Namespace) -> int:
+    keys = dict(word.partition("=")[::2] for word in options.set)
+    with tempfile.TemporaryDirectory() as folder:
+        blocks, scenario = cut(find_talus(), options.scenario, keys, Path(folder))
+        scene = scene_json(blocks, scenario, options.frames, {})
+    output: Path = options.output or options.scenario.with_suffix(".json")
+    output.write_text(json.dumps(scene), encoding="utf-8")
+    print(output)
+    return 0
+
+
+def study_command(options: argparse.Namespace) -> int:
+    """Measures what a config lists; one table, charts, and the numbers of a page. `options.study` is the package that knows how."""
+    study = options.study
+    config = study.read_config(options.config)
     if options.quick:
-        config = bench.quick(config)
-    bench.fill_page(config.page.read_text(encoding="utf-8"), config, [])  # faults of the page before hours of measuring
+        config = study.quick(config)
+    study.fill_page(config.page.read_text(encoding="utf-8"), config, [])  # faults of the page before hours of measuring
     if options.draw:
-        rows = bench.measured(config)
+        rows = study.measured(config)
     else:
-        rows = bench.measure(config, find_talus(), options.long, options.again, lambda line: print(line, flush=True))
+        rows = study.measure(config, find_talus(), options.long, options.again, lambda line: print(line, flush=True))
         print(config.output / "results.csv")
     config.output.mkdir(parents=True, exist_ok=True)
     config.images.mkdir(parents=True, exist_ok=True)
-    for name, chart in config.charts.items():
-        figure = bench.draw(config, chart, rows)
+    for name, described in config.charts.items():
+        figure = study.draw(config, described, rows)
         if figure is None:
             print(f"{name}: no chart, nothing of it was measured")
             continue
         figure.savefig(config.output / f"{name}.svg")
-        bench.save_small(figure, config.images / f"{name}.png")
+        save_small(figure, config.images / f"{name}.png")
         print(config.images / f"{name}.png")
     written = config.output / config.page.name if options.quick else config.page
     page = config.page.read_text(encoding="utf-8")  # as it is now: it may have been written on meanwhile
-    written.write_text(bench.fill_page(page, config, rows), encoding="utf-8")
+    written.write_text(study.fill_page(page, config, rows), encoding="utf-8")
     print(written)
     return 0
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(prog="talus-lab", description="Reads the results of talus and draws them; measures contact searches.")
+    parser = argparse.ArgumentParser(prog="talus-lab", description="Reads the results of talus and draws them; measures speed and accuracy.")
     parser.add_argument("--version", action="version", version=f"talus-lab {talus_lab.__version__}")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
 
@@ -99,14 +116,26 @@ def _parser() -> argparse.ArgumentParser:
     p.add_argument("--exaggerate", type=float, default=1.0, metavar="X", help="draw movements X times as large")
     p.set_defaults(command=plot_command)
 
-    b = commands.add_parser("bench", help="measure contact searches as a config says; table, charts and the numbers of its page")
-    b.add_argument("config", type=Path, metavar="CONFIG.yaml")
-    b.add_argument("--quick", action="store_true", help="each study in its shortest form, to see that it works; the page is left alone")
-    b.add_argument("--long", action="store_true", help="with the studies marked `long`")
-    b.add_argument("--draw", action="store_true", help="charts and page from what was measured so far, and nothing else")
-    b.add_argument("--again", action="store_true", help="measure also what an earlier run has measured")
-    b.set_defaults(command=bench_command)
+    c = commands.add_parser("scene", help="write a scenario as other programs read it, see docs/runners.md")
+    c.add_argument("scenario", type=Path, metavar="SCENARIO.yaml")
+    c.add_argument("-o", "--output", type=Path, metavar="FILE", help="default: beside the scenario, .json")
+    c.add_argument("--frames", type=int, default=1, metavar="K", help="states to look at beside the start (default: 1)")
+    c.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="change a key of the scenario")
+    c.set_defaults(command=scene_command)
+
+    _study(commands, "bench", bench, "measure contact searches as a config says; table, charts and the numbers of its page", "studies")
+    _study(commands, "chart", chart, "draw error against CPU time for the scenes and methods of a config; table, charts and page", "scenes")
     return parser
+
+
+def _study(commands: argparse._SubParsersAction, name: str, study: ModuleType, help: str, parts: str) -> None:
+    p = commands.add_parser(name, help=help)
+    p.add_argument("config", type=Path, metavar="CONFIG.yaml")
+    p.add_argument("--quick", action="store_true", help=f"the {parts} in their shortest form, to see that they work; the page is left alone")
+    p.add_argument("--long", action="store_true", help=f"with the {parts} marked `long`")
+    p.add_argument("--draw", action="store_true", help="charts and page from what was measured so far, and nothing else")
+    p.add_argument("--again", action="store_true", help="measure also what an earlier run has measured")
+    p.set_defaults(command=study_command, study=study)
 
 
 if __name__ == "__main__":

@@ -92,6 +92,10 @@ class Run:
         return tuple(self._read("talus/materials/name").tolist())
 
     @cached_property
+    def region_names(self) -> tuple[str, ...]:
+        return tuple(self._read("talus/regions/name").tolist())
+
+    @cached_property
     def joint_names(self) -> tuple[str, ...]:
         return tuple(self._read("talus/joints/name").tolist())
 

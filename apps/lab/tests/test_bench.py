@@ -9,13 +9,13 @@ import pytest
 import yaml
 
 from talus_lab import bench
-from talus_lab.bench.formulas import FormulaError, filled
 from talus_lab.bench.measure import COLUMNS
 from talus_lab.bench.select import growth
-from talus_lab.bench.tables import number
 from talus_lab.cli import main
 from talus_lab.program import find_talus
 from talus_lab.run import ResultError
+from talus_lab.study.formulas import FormulaError, filled
+from talus_lab.study.page import number
 
 ROOT = Path(__file__).resolve().parents[3]
 

@@ -1,21 +1,19 @@
-"""The charts of a study. Colours are Okabe and Ito's, which colour-blind people can tell apart; marks tell them apart in print."""
+"""The charts of a study."""
 
 from __future__ import annotations
 
 import math
-from pathlib import Path
 
 import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
-from PIL import Image
 
 from talus_lab.bench.config import Chart, Config
 from talus_lab.bench.select import Rows, series, words
 from talus_lab.plot import STYLE
+from talus_lab.study.picture import bare, finish, line
 
 # colour, mark, line
 METHOD_STYLE = {
@@ -45,20 +43,7 @@ def draw(config: Config, chart: Chart, rows: Rows) -> Figure | None:
             return None
         for ax in list(axes.flat)[len(chart.panels):]:
             ax.remove()
-        handles = {}
-        for ax in figure.axes:
-            handles |= {text: handle for handle, text in zip(*ax.get_legend_handles_labels())}
-        figure.legend(handles.values(), handles, loc="outside lower center", ncols=min(len(handles), 2 + 2 * wide))
-        ConstrainedLayoutEngine().execute(figure)
-        return figure
-
-
-def save_small(figure: Figure, path: Path) -> None:
-    """As PNG of 64 colours: a third of the size, and nothing to be seen of it."""
-    figure.savefig(path)
-    with Image.open(path) as picture:
-        small = picture.convert("RGB").quantize(64)
-    small.save(path, optimize=True)
+        return finish(figure, 2 + 2 * wide)
 
 
 def _methods(ax: Axes, config: Config, chart: Chart, panel: dict, rows: list) -> bool:
@@ -67,9 +52,9 @@ def _methods(ax: Axes, config: Config, chart: Chart, panel: dict, rows: list) ->
     lines = series(rows, column, panel["studies"], panel["scene"], panel.get("where"))
     lines = {name: line for name, line in lines.items() if not chart.series or name in chart.series}
     others = [name for name in lines if name.partition("@")[0] not in METHOD_STYLE]
-    for name, line in lines.items():
+    for name, values in lines.items():
         style = METHOD_STYLE.get(name.partition("@")[0]) or OTHERS[others.index(name) % len(OTHERS)]
-        _line(ax, line, words(name), *style, strong=name.startswith("auto"))
+        line(ax, list(values), list(values.values()), words(name), *style, strong=name.startswith("auto"))
     _axes(ax, config, config.studies[panel["studies"][0]].varied, column, panel, lines)
     return bool(lines)
 
@@ -78,13 +63,13 @@ def _parts(ax: Axes, config: Config, chart: Chart, panel: dict, rows: list) -> b
     """A line for each part of a step on one thread, and for the whole step on each number of threads."""
     drawn = {}
     for part, (color, mark) in PARTS.items():
-        for name, line in series(rows, part, panel["studies"], panel["scene"], panel.get("where")).items():
+        for name, values in series(rows, part, panel["studies"], panel["scene"], panel.get("where")).items():
             threads = name.partition("@")[2]
             if threads and part != "ns_per_block_and_step":
                 continue
             text = PART_WORDS.get(part, part) + (f", {threads} threads" if threads else "")
-            _line(ax, line, text, color, mark, "--" if threads else "-", strong=part == "ns_per_block_and_step")
-            drawn[text] = line
+            line(ax, list(values), list(values.values()), text, color, mark, "--" if threads else "-", strong=part == "ns_per_block_and_step")
+            drawn[text] = values
     _axes(ax, config, config.studies[panel["studies"][0]].varied, "ns_per_block_and_step", panel, drawn)
     ax.set_ylim(bottom=1)  # ns: less is nothing
     return bool(drawn)
@@ -109,18 +94,13 @@ def _shares(ax: Axes, config: Config, chart: Chart, panel: dict, rows: list) -> 
     return bool(names)
 
 
-def _line(ax: Axes, line: dict[float, float], text: str, color: str, mark: str, dashes: str, strong: bool) -> None:
-    ax.plot(list(line), list(line.values()), color=color, marker=mark, linestyle=dashes, label=text, linewidth=2.0 if strong else 1.2,
-            markersize=7 if mark == "*" else 4.5, zorder=3 if strong else 2)
-
-
 def _axes(ax: Axes, config: Config, varied: str, column: str, panel: dict, lines: dict) -> None:
     x, y = config.quantities[varied], config.quantities[column]
     if x.log:
         ax.set_xscale("log")
     else:
         ax.xaxis.set_major_locator(MaxNLocator(6, steps=[1, 1.5, 3, 5, 10]))
-    numbers = [value for line in lines.values() for value in line.values()]
+    numbers = [value for values in lines.values() for value in values.values()]
     if y.log and numbers and min(numbers) > 0:
         ax.set_yscale("log")
         ax.yaxis.set_major_locator(LogLocator(subs=(1,) if max(numbers) > 100 * min(numbers) else (1, 2, 5)))
@@ -130,6 +110,4 @@ def _axes(ax: Axes, config: Config, varied: str, column: str, panel: dict, lines
     ax.set_xlabel(x.label)
     if ax.get_subplotspec().is_first_col():
         ax.set_ylabel(y.label)
-    ax.set_title(panel.get("title", ""), loc="left", fontsize=9)
-    ax.grid(True, which="major", color="#e0e0e0", linewidth=0.5)
-    ax.spines[["top", "right"]].set_visible(False)
+    bare(ax, panel.get("title", ""))

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import hashlib
-import os
 import subprocess
 import tempfile
 import time
@@ -15,8 +12,7 @@ from typing import Callable, Iterator
 from talus_lab.bench.config import Config, Study, overrides
 from talus_lab.program import find_peers
 from talus_lab.run import ResultError
-
-Row = dict[str, str]
+from talus_lab.study.kept import Row, digest, read_rows, write_rows
 
 # Beside those of the point: the columns of `talus bench search`, and then those of `talus bench step` that it lacks (docs/benchmarks.md).
 COLUMNS = ("study", "scene", "varied", "value", "method", "threads", "skin", "boxes", "steps", "ns_per_box_median", "ns_per_box_q1",
@@ -66,7 +62,7 @@ def measure(config: Config, talus: str, long: bool = False, again: bool = False,
         started = time.monotonic()
         found = [{**row, "task": task} for row in measure_point(config, point, programs)]
         rows = [row for row in rows if _name(row) != point.name] + found
-        write_rows(table, rows)
+        write_rows(table, COLUMNS, rows)
         say(f"{where}: {time.monotonic() - started:.1f} s")
     order = {point.name: k for k, point in enumerate(everything)}
     return sorted(rows, key=lambda row: order[_name(row)])
@@ -74,11 +70,7 @@ def measure(config: Config, talus: str, long: bool = False, again: bool = False,
 
 def measured(config: Config) -> list[Row]:
     """The rows that are there already."""
-    table = config.output / "results.csv"
-    rows = read_rows(table)
-    if rows and set(rows[0]) != set(COLUMNS):
-        raise ResultError(f"{table}: is not a table of this version; move it away, and everything is measured anew")
-    return rows
+    return read_rows(config.output / "results.csv", COLUMNS)
 
 
 def quick(config: Config) -> Config:
@@ -160,41 +152,10 @@ def _digest(config: Config, point: Point, programs: Programs) -> str:
     """What a result depends on: the programs, the scenario, and all that the config says about this point."""
     study = config.studies[point.study]
     scenario = config.path.parent / config.scenes[point.scene].scenario
-    used = [programs.talus] + ([programs.peers] if study.command == "peers" and programs.peers else [])
-    text = repr((replace(study, scenes=[], vary={study.varied: []}, long=False), overrides(config, point.scene, study, point.value),
-                 _within_reach(config, study, point), point.name))
-    whole = hashlib.sha256(text.encode() + scenario.read_bytes())
-    for program in used:
-        whole.update(_program_digest(program, os.stat(program).st_mtime_ns))
-    return whole.hexdigest()[:16]
-
-
-_programs: dict[tuple[str, int], bytes] = {}
-
-
-def _program_digest(program: str, changed: int) -> bytes:
-    if (program, changed) not in _programs:
-        _programs[program, changed] = hashlib.sha256(Path(program).read_bytes()).digest()
-    return _programs[program, changed]
+    used = [Path(programs.talus)] + ([Path(programs.peers)] if study.command == "peers" and programs.peers else [])
+    return digest(replace(study, scenes=[], vary={study.varied: []}, long=False), overrides(config, point.scene, study, point.value),
+                  _within_reach(config, study, point), point.name, scenario, *used)
 
 
 def _name(row: Row) -> tuple[str, str, str]:
     return row["study"], row["scene"], row["value"]
-
-
-def read_rows(path: Path) -> list[Row]:
-    if not path.exists():
-        return []
-    with path.open(encoding="utf-8", newline="") as file:
-        return list(csv.DictReader(file))
-
-
-def write_rows(path: Path, rows: list[Row]) -> None:
-    """The whole file, or what was there before: an interrupt leaves no half table."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    beside = path.with_suffix(".part")
-    with beside.open("w", encoding="utf-8", newline="") as file:
-        writer = csv.DictWriter(file, COLUMNS, restval="", extrasaction="ignore", lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(rows)
-    beside.replace(path)

@@ -1,27 +1,18 @@
-"""The tables of a page: Markdown between a line `<!-- table NAME -->` and a line `<!-- end -->`, replaced by each run of the study."""
+"""The tables of the page of a study."""
 
 from __future__ import annotations
 
 import math
-import re
-from typing import Any, Sequence
 
 from talus_lab.bench.config import Config, Table
 from talus_lab.bench.select import Rows, growth, series, totals, words
-from talus_lab.run import ResultError
-
-BLOCK = re.compile(r"(<!-- table ([^ >]+) -->\n).*?(<!-- end -->)", re.DOTALL)
-NOTHING = "not measured\n"
+from talus_lab.study import page
+from talus_lab.study.page import NOTHING, number, table_text
 
 
 def fill_page(text: str, config: Config, rows: Rows) -> str:
-    """The text with every table as the rows have it. Raises ResultError for markers without a table, and tables without a marker."""
-    marked = [match[2] for match in BLOCK.finditer(text)]
-    faults = [f"no table is called {name}, there are {', '.join(config.tables)}" for name in marked if name not in config.tables]
-    faults += [f"a line <!-- table {name} -->, and <!-- end --> below it, is missing" for name in config.tables if name not in marked]
-    if faults or text.count("<!-- table ") != len(marked):
-        raise ResultError("\n".join(f"{config.page}: {fault}" for fault in faults or ["a table has no <!-- end -->"]))
-    return BLOCK.sub(lambda match: match[1] + markdown(config, config.tables[match[2]], rows) + match[3], text)
+    """The text with every table as the rows have it."""
+    return page.fill(config.page, text, config.tables, lambda name: markdown(config, config.tables[name], rows))
 
 
 def markdown(config: Config, table: Table, rows: Rows) -> str:
@@ -31,8 +22,7 @@ def markdown(config: Config, table: Table, rows: Rows) -> str:
     if not body:
         return NOTHING
     filled = [k for k in range(len(head)) if k < 2 or any(line[k] != "-" for line in body)]
-    lines = [head, ["---"] * 2 + ["---:"] * (len(head) - 2), *body]
-    return "".join(f"| {' | '.join(line[k] for k in filled)} |\n" for line in lines)
+    return table_text([head[k] for k in filled], [[line[k] for k in filled] for line in body], words=2)
 
 
 Parts = tuple[list[str], list[list[str]]]
@@ -110,13 +100,3 @@ def _short(config: Config, quantity: str) -> str:
 
 def _ratio(a: float | None, b: float | None) -> str:
     return number(a / b, 2) if a is not None and b else "-"
-
-
-def number(x: Any, digits: int = 3) -> str:
-    """`digits` significant digits, thousands apart."""
-    if x is None:
-        return "-"
-    if x == 0:
-        return "0"
-    decimals = max(0, digits - 1 - math.floor(math.log10(abs(x))))
-    return f"{round(x, digits - 1 - math.floor(math.log10(abs(x)))):,.{decimals}f}"

@@ -6,11 +6,12 @@ import ast
 import math
 import operator
 import re
-from typing import Mapping
+from typing import Callable, Mapping
 
 OPERATIONS = {ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv, ast.Pow: operator.pow,
               ast.USub: operator.neg}
-FUNCTIONS = {"sqrt": math.sqrt, "min": min, "max": max, "round": round}
+FUNCTIONS = {"sqrt": math.sqrt, "min": min, "max": max, "round": round, "sin_deg": lambda x: math.sin(math.radians(x)),
+             "cos_deg": lambda x: math.cos(math.radians(x)), "tan_deg": lambda x: math.tan(math.radians(x))}
 
 
 class FormulaError(ValueError):
@@ -18,18 +19,19 @@ class FormulaError(ValueError):
 
 
 def filled(text: object, values: Mapping[str, float]) -> str:
-    """The text with every {formula} replaced by its value. Formulas know + - * / **, sqrt, min, max, round and the names in values."""
+    """The text with every {formula} replaced by its value. Formulas know + - * / **, FUNCTIONS and the names in values."""
     return re.sub(r"\{([^{}]*)\}", lambda match: format(evaluate(match[1], values), ".10g"), str(text))
 
 
-def evaluate(formula: str, values: Mapping[str, float]) -> float:
+def evaluate(formula: str, values: Mapping[str, float], more: Mapping[str, Callable[..., float]] = {}) -> float:
+    """more: functions beside FUNCTIONS."""
     try:
-        return _value(ast.parse(formula.strip(), mode="eval").body, values)
+        return _value(ast.parse(formula.strip(), mode="eval").body, values, {**FUNCTIONS, **more})
     except (SyntaxError, ArithmeticError, ValueError, TypeError) as error:
         raise FormulaError(f"{{{formula}}}: {getattr(error, 'msg', error)}") from None
 
 
-def _value(node: ast.expr, values: Mapping[str, float]) -> float:
+def _value(node: ast.expr, values: Mapping[str, float], functions: Mapping[str, Callable[..., float]]) -> float:
     match node:
         case ast.Constant(value=int() | float()):
             return node.value
@@ -39,7 +41,7 @@ def _value(node: ast.expr, values: Mapping[str, float]) -> float:
             return values[node.id]
         case ast.BinOp() | ast.UnaryOp() if type(node.op) in OPERATIONS:
             operands = [node.left, node.right] if isinstance(node, ast.BinOp) else [node.operand]
-            return OPERATIONS[type(node.op)](*(_value(operand, values) for operand in operands))
-        case ast.Call(func=ast.Name(id=name), keywords=[]) if name in FUNCTIONS:
-            return FUNCTIONS[name](*(_value(argument, values) for argument in node.args))
-    raise ValueError("a formula has numbers, names, + - * / **, sqrt, min, max and round")
+            return OPERATIONS[type(node.op)](*(_value(operand, values, functions) for operand in operands))
+        case ast.Call(func=ast.Name(id=name), keywords=[]) if name in functions:
+            return functions[name](*(_value(argument, values, functions) for argument in node.args))
+    raise ValueError(f"a formula has numbers, names, + - * / ** and {', '.join(functions)}")

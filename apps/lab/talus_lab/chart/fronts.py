@@ -1,0 +1,50 @@
+"""What a method can do: for each error the least CPU time."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Iterable, Mapping
+
+from talus_lab.chart.config import LARGEST, Config
+from talus_lab.chart.measure import parts
+
+Rows = Iterable[Mapping[str, str]]
+
+
+@dataclass(frozen=True)
+class Point:
+    cpu_time: float  # s per second of the scene
+    error: float
+    setting: str
+
+
+def points(rows: Rows, scene: str, error: str = LARGEST) -> dict[str, list[Point]]:
+    """By method: all settings that gave a result, in the order of their CPU time. An error below what the reference knows counts as
+    that."""
+    found: dict[str, list[Point]] = {}
+    for row in rows:
+        if row["scene"] == scene and row["error"]:
+            size = float(row["error"]) if error == LARGEST else parts(row["errors"])[error]
+            found.setdefault(row["method"], []).append(Point(float(row["cpu_time"]), max(size, float(row["unsure"])), row["setting"]))
+    return {method: sorted(line, key=lambda point: (point.cpu_time, point.error)) for method, line in found.items()}
+
+
+def front(line: Iterable[Point]) -> list[Point]:
+    """Those of the points that no other one beats in time and error."""
+    best: list[Point] = []
+    for point in line:
+        if not best or point.error < best[-1].error:
+            best.append(point)
+    return best
+
+
+def least(line: Iterable[Point], level: float) -> Point | None:
+    """The cheapest point with an error of at most this."""
+    return next((point for point in line if point.error <= level), None)
+
+
+def best(config: Config, rows: Rows, scene: str, level: float, ours: bool) -> tuple[str, Point] | None:
+    """Of our methods or of the other programs: the cheapest, and its point."""
+    found = {method: point for method, line in points(rows, scene).items()
+             if config.methods[method].ours == ours and (point := least(line, level))}
+    return min(found.items(), key=lambda item: item[1].cpu_time, default=None)

@@ -1,0 +1,76 @@
+"""Sections of a config as dataclasses. Faults are collected, so that one report has all of them."""
+
+from __future__ import annotations
+
+import difflib
+from dataclasses import MISSING, fields
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from talus_lab.run import ResultError
+
+TYPES = {"str": (str, "a text"), "int": (int, "a whole number"), "float": ((int, float), "a number"), "bool": (bool, "true or false"),
+         "list": (list, "a list"), "dict": (dict, "a mapping"), "Any": (object, "")}
+
+
+def read_yaml(path: Path) -> dict:
+    """The top of the file; empty if it is no mapping. Raises ResultError if it is no YAML."""
+    try:
+        given = yaml.safe_load(path.read_text(encoding="utf-8"))
+    except (yaml.YAMLError, UnicodeDecodeError) as error:
+        raise ResultError(f"{path}: no YAML: {' '.join(str(error).split())}") from None
+    return given if isinstance(given, dict) else {}
+
+
+def report(path: Path, faults: list[str]) -> None:
+    """Raises ResultError with every fault, one per line, if there are any."""
+    if faults:
+        raise ResultError("\n".join(f"{path}: {fault}" for fault in faults))
+
+
+def section(kind: type, given: object, where: str, faults: list[str]) -> dict:
+    """name -> dataclass, of the entries that are right."""
+    if not isinstance(given, dict):
+        faults.append(f"{where}: is not a mapping")
+        return {}
+    made = {str(name): entry(kind, described, f"{where}.{name}", faults) for name, described in given.items()}
+    return {name: described for name, described in made.items() if described}
+
+
+def entry(kind: type, given: object, where: str, faults: list[str]) -> Any:
+    if not isinstance(given, dict):
+        faults.append(f"{where}: is not a mapping")
+        return None
+    before = len(faults)
+    unknown_keys(given, [f.name for f in fields(kind)], where + ".", faults)
+    for f in fields(kind):
+        if f.name not in given:
+            if f.default is MISSING and f.default_factory is MISSING:
+                faults.append(f"{where}.{f.name}: is missing")
+            continue
+        expected, words = TYPES[f.type]
+        if not isinstance(given[f.name], expected) or (f.type in ("int", "float") and isinstance(given[f.name], bool)):
+            faults.append(f"{where}.{f.name}: is not {words}")
+    return kind(**given) if len(faults) == before else None
+
+
+def top(given: dict, known: list[str], faults: list[str], needed: list[str] | None = None) -> None:
+    """Keys of the top level: unknown ones, and those that are missing."""
+    unknown_keys(given, known, "", faults)
+    faults += [f"{name}: is missing" for name in (known if needed is None else needed) if name not in given]
+
+
+def unknown_keys(given: dict, known: list[str], where: str, faults: list[str]) -> None:
+    faults += [f"{where}{key}: unknown key{nearest(key, known)}" for key in given if key not in known]
+
+
+def strangers(names: Any, known: Any, where: str) -> list[str]:
+    """A fault for each name that is not known."""
+    return [f"{where}: unknown {name}{nearest(name, known)}" for name in names if name not in known]
+
+
+def nearest(name: object, known: Any) -> str:
+    close = difflib.get_close_matches(str(name), list(known), 1)
+    return f"; did you mean {close[0]}?" if close else f"; there are {', '.join(known)}"
