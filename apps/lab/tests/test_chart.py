@@ -43,7 +43,7 @@ elif float(sets["k"]) > 1e6:
 else:
     shutil.copy(here / f"{{float(sets['k']):g}}.h5", given[given.index("-o") + 1])
 """
-# A runner: the square slides by 0.4 m less 0.4 / rate, in 1 s / rate.
+# A runner: the square slides by 0.4 m less 0.4 / rate, and takes rate / 1e4 s for it.
 RUNNER = """
 import json, sys
 scene = json.load(open(sys.argv[1]))
@@ -53,7 +53,7 @@ if rate > 1000:
 start = [block["position"] for block in scene["blocks"]]
 end = [list(place) for place in start]
 end[1][0] += 0.4 - 0.4 / rate
-json.dump({"cpu_time": 1 / rate, "time": [0, scene["end"]], "position": [start, end], "angle": [[0] * len(start)] * 2}, open(sys.argv[2], "w"))
+json.dump({"cpu_time": rate / 1e4, "time": [0, scene["end"]], "position": [start, end], "angle": [[0] * len(start)] * 2}, open(sys.argv[2], "w"))
 """
 PAGE = "# Square\n" + "".join(f"<!-- table {name} -->\n<!-- end -->\n" for name in ("lead", "front-slide", "front-other", "reference", "failed"))
 
@@ -260,6 +260,11 @@ def test_a_front_has_what_no_other_setting_beats():
     line = [fronts.Point(t, e, "") for t, e in ((1, 0.5), (2, 0.7), (3, 0.1), (4, 0.1))]
     assert [p.cpu_time for p in fronts.front(line)] == [1, 3]
     assert fronts.least(line, 0.2).cpu_time == 3 and fronts.least(line, 0.01) is None
+
+
+def test_an_error_that_dearer_settings_do_not_reach_is_an_accident():
+    line = [fronts.Point(t, e, "") for t, e in ((1, 1e-4), (2, 2e-2), (3, 1e-2), (4, 3e-3), (5, 8e-3))]
+    assert [p.cpu_time for p in fronts.confirmed(line)] == [2, 3, 4, 5]
 
 
 def test_times_read_well():

@@ -10,6 +10,12 @@ from talus_lab.chart.measure import parts
 
 Rows = Iterable[Mapping[str, str]]
 
+# Errors change their sign on the way from coarse to fine settings, and are small where they do: an error counts where a dearer setting
+# of the method has at most so many times of it, or there is none. With 1 hardly anything would count but lines that fall all the way,
+# with 10 the sign changes would.
+CONFIRMED = 3.0
+NOTHING = 1e-9  # smaller errors are the same
+
 
 @dataclass(frozen=True)
 class Point:
@@ -29,6 +35,12 @@ def points(rows: Rows, scene: str, error: str = LARGEST) -> dict[str, list[Point
     return {method: sorted(line, key=lambda point: (point.cpu_time, point.error)) for method, line in found.items()}
 
 
+def confirmed(line: list[Point]) -> list[Point]:
+    """Those of the points whose error is no accident. line: in the order of the CPU time."""
+    return [point for k, point in enumerate(line)
+            if k + 1 == len(line) or min(later.error for later in line[k + 1:]) <= CONFIRMED * max(point.error, NOTHING)]
+
+
 def front(line: Iterable[Point]) -> list[Point]:
     """Those of the points that no other one beats in time and error."""
     best: list[Point] = []
@@ -46,5 +58,5 @@ def least(line: Iterable[Point], level: float) -> Point | None:
 def best(config: Config, rows: Rows, scene: str, level: float, ours: bool) -> tuple[str, Point] | None:
     """Of our methods or of the other programs: the cheapest, and its point."""
     found = {method: point for method, line in points(rows, scene).items()
-             if config.methods[method].ours == ours and (point := least(line, level))}
+             if config.methods[method].ours == ours and (point := least(confirmed(line), level))}
     return min(found.items(), key=lambda item: item[1].cpu_time, default=None)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from talus_lab.chart.config import Config, scale_of
-from talus_lab.chart.fronts import Rows, best, least, points
+from talus_lab.chart.fronts import Rows, best, confirmed, least, points
 from talus_lab.chart.measure import parts, references
 from talus_lab.study import page
 from talus_lab.study.page import NOTHING, number, table_text
@@ -27,7 +27,7 @@ def _table(config: Config, name: str, rows: list) -> str:
 
 def _front(config: Config, scene: str, rows: list) -> str:
     """CPU time of each method for each error; the least of a column in bold."""
-    lines = points(rows, scene)
+    lines = {method: confirmed(line) for method, line in points(rows, scene).items()}
     if not lines:
         return NOTHING
     cheapest = [min((point.cpu_time for line in lines.values() if (point := least(line, level))), default=None) for level in config.levels]
