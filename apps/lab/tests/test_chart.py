@@ -133,7 +133,7 @@ def test_a_study_becomes_a_table_charts_and_the_numbers_of_its_page(study, capsy
     page = (study / "page.md").read_text()
     assert "| Slide | 20 (ours / theirs) | only ours |" in page
     assert "| ours | **5.0e-04** | **5.0e-04** |" in page and "| theirs | 0.01 | - | 1.0e-02 at 0.01 | rate 100 |" in page
-    assert "| not there | not measured | not measured |" in page
+    assert "| not there | is not there | is not there |" in page
     assert "no_such_program is not there. Ask for it." in capsys.readouterr().out
 
 

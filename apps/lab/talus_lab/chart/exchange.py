@@ -33,7 +33,7 @@ def scene_json(run: Run, scenario: Mapping[str, Any], frames: int, settings: Map
         if any(block.get(key) for block in scenario.get("blocks") or []):
             raise ResultError(f"{key} of a block: other programs are not told of it")
     end = share * scenario["run"]["until"]["time"]
-    return {"title": scenario["title"], "gravity": gravity(scenario), "end": end, "frames": frames, "blocks": blocks_json(run),
+    return {"title": scenario["title"], "gravity": gravity(scenario), "end": end, "frames": frames, "blocks": blocks_json(run, scenario),
             "contacts": contacts_json(run, scenario), "friction": default_friction(scenario), "settings": dict(settings)}
 
 
@@ -48,8 +48,15 @@ def as_table(given: Any) -> dict:
     return given if isinstance(given, dict) else {"time": [0.0], "x": [given[0]], "y": [given[1]]}
 
 
-def blocks_json(run: Run) -> list[dict]:
-    blocks, position, velocity = run.blocks, run.position(0), run.velocity(0)
+def start_velocity(run: Run, scenario: Mapping[str, Any]) -> np.ndarray:
+    """[blocks, 2] m/s; blocks cut from rock have none."""
+    given = {block["name"]: block["velocity"] for block in scenario.get("blocks") or []}
+    names = [str(name).partition("[")[0] for name in run.blocks["name"]]
+    return np.array([given.get(name, (0.0, 0.0)) for name in names], dtype=float)
+
+
+def blocks_json(run: Run, scenario: Mapping[str, Any]) -> list[dict]:
+    blocks, position, velocity = run.blocks, run.position(0), start_velocity(run, scenario)
     found = [{"name": str(blocks["name"][b]), "held": bool(blocks["held"][b]), "mass": float(blocks["mass"][b]),
               "inertia": float(blocks["inertia"][b]), "position": position[b].tolist(), "velocity": velocity[b].tolist(),
               "parts": []} for b in range(run.block_count)]

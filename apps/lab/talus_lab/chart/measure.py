@@ -18,6 +18,7 @@ from talus_lab.study.kept import Row, digest, read_rows, write_rows
 # error. repeat: runs so far.
 COLUMNS = ("scene", "method", "setting", "cpu_time", "error", "errors", "unsure", "repeat", "said", "task")
 REFERENCE_COLUMNS = ("scene", "setting", "values", "task")
+NOT_THERE = "is not there"
 LONG = 10.0  # s of CPU: what takes longer is not repeated, for what else the machine does evens out
 
 
@@ -41,14 +42,16 @@ def measure(config: Config, talus: str, long: bool = False, again: bool = False,
     everything = list(cells(config))
     names = {cell.name for cell in everything}
     rows = {_name(row): row for row in measured(config) if _name(row) in names}
-    for name, method in config.methods.items():
-        if not method.ours and command_of(method, talus) is None:
-            say(f"{name}: left out, {method.command[0]} is not there. {method.missing}")
+    absent = {name: method for name, method in config.methods.items() if not method.ours and command_of(method, talus) is None}
+    for name, method in absent.items():
+        say(f"{name}: left out, {method.command[0]} is not there. {method.missing}")
+    for cell in everything:
+        if cell.method in absent and cell.name not in rows:
+            rows[cell.name] = {**_empty(cell), "said": f"{absent[cell.method].command[0]} {NOT_THERE}"}
     for scene in config.scenes:
         if config.scenes[scene].long and not long:
             continue
-        due = [cell for cell in everything if cell.scene == scene and
-               (config.methods[cell.method].ours or command_of(config.methods[cell.method], talus))]
+        due = [cell for cell in everything if cell.scene == scene and cell.method not in absent]
         with TemporaryDirectory() as folder:
             stage = Stage(config, scene, talus, folder)
             for row in _scene(stage, due, {} if again else rows, say):
@@ -100,7 +103,7 @@ def _scene(stage: Stage, due: list[Cell], known: dict[tuple, Row], say: Callable
 
 
 def _first(stage: Stage, cell: Cell, exact: dict[str, tuple[float, float]]) -> Row:
-    row = {name: "" for name in COLUMNS} | {"scene": cell.scene, "method": cell.method, "setting": setting_text(cell.setting), "repeat": "1"}
+    row = _empty(cell) | {"repeat": "1"}
     try:
         done = stage.run(cell.method, cell.setting)
         errors = {name: abs(value - exact[name][0]) / _scale(stage, name, exact) for name, value in values(stage, done).items()}
@@ -111,6 +114,10 @@ def _first(stage: Stage, cell: Cell, exact: dict[str, tuple[float, float]]) -> R
     largest = max(errors, key=lambda name: errors[name])
     return {**row, "cpu_time": f"{done.cpu_time:.4g}", "error": f"{errors[largest]:.4g}", "unsure": f"{exact[largest][1]:.2g}",
             "errors": "; ".join(f"{name}={value:.4g}" for name, value in errors.items())}
+
+
+def _empty(cell: Cell) -> Row:
+    return {name: "" for name in COLUMNS} | {"scene": cell.scene, "method": cell.method, "setting": setting_text(cell.setting), "repeat": "0"}
 
 
 def _again(stage: Stage, cell: Cell, row: Row) -> Row:
@@ -143,7 +150,9 @@ def _reference_levels(stage: Stage, say: Callable[[str], None]) -> Iterator[dict
     """Values of the reference runs, from coarse to fine; kept, too."""
     table = stage.config.output / "references.csv"
     method = stage.scene.reference["method"]
-    for setting in stage.scene.reference["settings"]:
+    settings = stage.scene.reference["settings"]
+    names = {f"{method}, {setting_text(setting)}" for setting in settings}
+    for setting in settings:
         cell = Cell(stage.name, method, setting)
         task = _task(stage, cell)
         rows = references(stage.config)
@@ -153,7 +162,7 @@ def _reference_levels(stage: Stage, say: Callable[[str], None]) -> Iterator[dict
             found = values(stage, stage.run(method, setting))
             row = {"scene": stage.name, "setting": f"{method}, {setting_text(setting)}", "task": task,
                    "values": "; ".join(f"{name}={value:.10g}" for name, value in found.items())}
-            others = [old for old in rows if (old["scene"], old["setting"]) != (row["scene"], row["setting"])]
+            others = [old for old in rows if old["scene"] != stage.name or old["setting"] in names - {row["setting"]}]
             write_rows(table, REFERENCE_COLUMNS, [*others, row])
         yield parts(row["values"])
 

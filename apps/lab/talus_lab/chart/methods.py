@@ -13,7 +13,7 @@ from tempfile import TemporaryDirectory
 import numpy as np
 
 from talus_lab.chart.config import Config, Error, Method, Setting, figure_of, key_text, keys_of
-from talus_lab.chart.exchange import call, cut, scene_json, sets
+from talus_lab.chart.exchange import call, cut, scene_json, sets, start_velocity
 from talus_lab.chart.motion import Motion, motion_of_json, motion_of_run
 from talus_lab.chart.values import Look
 from talus_lab.run import ResultError, Run, open_run
@@ -63,7 +63,7 @@ class Stage:
         if error.direction_deg is not None:
             turned = np.radians(figure_of(error.direction_deg))
             direction = np.array([np.cos(turned), np.sin(turned)])
-        return Look(self._chosen(error.blocks), table["mass"], table["inertia"], self.blocks.velocity(0), direction, figure_of(error.tilt))
+        return Look(self._chosen(error.blocks), table["mass"], table["inertia"], start_velocity(*self._cut), direction, figure_of(error.tilt))
 
     def run(self, method: str, setting: Setting, states: bool = True) -> Done:
         """states: with those between start and end; without them the clock is not disturbed. Raises ResultError."""
@@ -79,8 +79,8 @@ class Stage:
         out = folder / "run.h5"
         call([self.talus, "run", str(self.config.scenario(self.name)), "-o", str(out), *sets(keys)], self.config.limit_s)
         run = open_run(out)
-        if run.status != "complete":
-            raise ResultError(run.status)
+        if run.status != "complete" or "cpu_time" not in run.attributes:
+            raise ResultError(run.status if run.status != "complete" else f"{self.talus} is too old: it does not say its CPU time")
         return Done(motion_of_run(run), float(run.attributes["cpu_time"]) / self.seconds)
 
     def _other(self, method: Method, setting: Setting, folder: Path) -> Done:

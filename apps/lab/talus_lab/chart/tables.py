@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from talus_lab.chart.config import Config, scale_of
 from talus_lab.chart.fronts import Rows, best, confirmed, least, points
-from talus_lab.chart.measure import parts, references
+from talus_lab.chart.measure import NOT_THERE, parts, references
 from talus_lab.study import page
 from talus_lab.study.page import NOTHING, number, table_text
 
@@ -36,7 +36,8 @@ def _front(config: Config, scene: str, rows: list) -> str:
         described = config.methods[method]
         if method not in lines:
             said = {row["said"] for row in rows if row["scene"] == scene and row["method"] == method}
-            body.append([described.label, *["failed" if said else "not measured"] * len(config.levels), "", ""])
+            why = "not measured" if not said else NOT_THERE if all(text.endswith(NOT_THERE) for text in said) else "failed"
+            body.append([described.label, *[why] * len(config.levels), "", ""])
             continue
         cells = []
         for level, lowest in zip(config.levels, cheapest):
@@ -84,7 +85,7 @@ def _reference(config: Config, rows: list) -> str:
 def _failed(config: Config, rows: list) -> str:
     """Runs without a result, and what the program said."""
     body = [[config.scenes[row["scene"]].title, config.methods[row["method"]].label, row["setting"], row["said"].replace("|", "/")]
-            for row in rows if row["said"]]
+            for row in rows if row["said"] and not row["said"].endswith(NOT_THERE)]
     return table_text(["scene", "method", "setting", "said"], body, words=4) if body else "none\n"
 
 
