@@ -9,7 +9,7 @@ from tempfile import TemporaryDirectory
 from typing import Callable, Iterator
 
 from talus_lab.chart.config import REFERENCE, Config, Setting, figure_of, keys_of, scale_of, settings_of
-from talus_lab.chart.methods import Done, Stage, command_of
+from talus_lab.chart.methods import Done, Prepared, command_of
 from talus_lab.chart.values import VALUES
 from talus_lab.run import ResultError
 from talus_lab.study.kept import Row, digest, read_rows, write_rows
@@ -53,8 +53,8 @@ def measure(config: Config, talus: str, long: bool = False, again: bool = False,
             continue
         due = [cell for cell in everything if cell.scene == scene and cell.method not in absent]
         with TemporaryDirectory() as folder:
-            stage = Stage(config, scene, talus, folder)
-            for row in _scene(stage, due, {} if again else rows, say):
+            ready = Prepared(config, scene, talus, folder)
+            for row in _scene(ready, due, {} if again else rows, say):
                 rows[_name(row)] = row
                 write_rows(table, COLUMNS, list(rows.values()))
     return [rows[cell.name] for cell in everything if cell.name in rows]
@@ -80,37 +80,37 @@ def setting_text(setting: Setting) -> str:
     return ", ".join(f"{name} {value:g}" if isinstance(value, (int, float)) else f"{name} {value}" for name, value in setting.items())
 
 
-def _scene(stage: Stage, due: list[Cell], known: dict[tuple, Row], say: Callable[[str], None]) -> Iterator[Row]:
+def _scene(ready: Prepared, due: list[Cell], known: dict[tuple, Row], say: Callable[[str], None]) -> Iterator[Row]:
     """Every setting once, then all of them again, in turn: a machine that changes its speed meanwhile changes it for all."""
-    tasks = {cell.name: _task(stage, cell) for cell in due}
+    tasks = {cell.name: _task(ready, cell) for cell in due}
     rows = {cell.name: known[cell.name] for cell in due if cell.name in known and known[cell.name]["task"] == tasks[cell.name]}
     exact = None
-    for turn in range(stage.config.repeat):
+    for turn in range(ready.config.repeat):
         for k, cell in enumerate(due, 1):
             row = rows.get(cell.name)
-            if row and (int(row["repeat"]) > turn or row["said"] or float(row["cpu_time"]) * stage.seconds > LONG):
+            if row and (int(row["repeat"]) > turn or row["said"] or float(row["cpu_time"]) * ready.seconds > LONG):
                 continue
             try:
-                exact = exact or _exact(stage, say)
+                exact = exact or _exact(ready, say)
             except ResultError as error:  # another machine, or another day, may have what the reference needs
-                say(f"{stage.name}: left out, no reference: {error}")
+                say(f"{ready.name}: left out, no reference: {error}")
                 return
-            row = _first(stage, cell, exact) if row is None else _again(stage, cell, row)
+            row = _first(ready, cell, exact) if row is None else _again(ready, cell, row)
             rows[cell.name] = {**row, "task": tasks[cell.name]}
-            say(f"{cell.scene}, {turn + 1} of {stage.config.repeat}, [{k}/{len(due)}] {cell.method}, {setting_text(cell.setting)}: "
+            say(f"{cell.scene}, {turn + 1} of {ready.config.repeat}, [{k}/{len(due)}] {cell.method}, {setting_text(cell.setting)}: "
                 + (row["said"] or f"error {float(row['error']):.2e}, {float(row['cpu_time']):.2e} s per s"))
             yield rows[cell.name]
 
 
-def _first(stage: Stage, cell: Cell, exact: dict[str, tuple[float, float]]) -> Row:
+def _first(ready: Prepared, cell: Cell, exact: dict[str, tuple[float, float]]) -> Row:
     row = _empty(cell) | {"repeat": "1"}
     try:
-        done = stage.run(cell.method, cell.setting)
-        errors = {name: abs(value - exact[name][0]) / _scale(stage, name, exact) for name, value in values(stage, done).items()}
+        done = ready.run(cell.method, cell.setting)
+        errors = {name: abs(value - exact[name][0]) / _scale(ready, name, exact) for name, value in values(ready, done).items()}
     except ResultError as error:
         return {**row, "said": str(error)}
-    if stage.scene.frames > 1 and stage.config.methods[cell.method].ours:
-        done = stage.run(cell.method, cell.setting, states=False)
+    if ready.scene.frames > 1 and ready.config.methods[cell.method].ours:
+        done = ready.run(cell.method, cell.setting, states=False)
     largest = max(errors, key=lambda name: errors[name])
     return {**row, "cpu_time": f"{done.cpu_time:.4g}", "error": f"{errors[largest]:.4g}", "unsure": f"{exact[largest][1]:.2g}",
             "errors": "; ".join(f"{name}={value:.4g}" for name, value in errors.items())}
@@ -120,49 +120,54 @@ def _empty(cell: Cell) -> Row:
     return {name: "" for name in COLUMNS} | {"scene": cell.scene, "method": cell.method, "setting": setting_text(cell.setting), "repeat": "0"}
 
 
-def _again(stage: Stage, cell: Cell, row: Row) -> Row:
-    done = stage.run(cell.method, cell.setting, states=False)
-    return {**row, "repeat": str(int(row["repeat"]) + 1), "cpu_time": f"{min(float(row['cpu_time']), done.cpu_time):.4g}"}
+def _again(ready: Prepared, cell: Cell, row: Row) -> Row:
+    """A run that fails here, as one does that takes a little longer than it may, changes nothing."""
+    row = {**row, "repeat": str(int(row["repeat"]) + 1)}
+    try:
+        done = ready.run(cell.method, cell.setting, states=False)
+    except ResultError:
+        return row
+    return {**row, "cpu_time": f"{min(float(row['cpu_time']), done.cpu_time):.4g}"}
 
 
-def values(stage: Stage, done: Done) -> dict[str, float]:
-    return {name: VALUES[error.value](done.motion, stage.look(error)) for name, error in stage.scene.errors.items()}
+def values(ready: Prepared, done: Done) -> dict[str, float]:
+    return {name: VALUES[error.value](done.motion, ready.look(error)) for name, error in ready.scene.errors.items()}
 
 
-def _scale(stage: Stage, name: str, exact: dict[str, tuple[float, float]]) -> float:
-    return scale_of(stage.scene.errors[name], exact[name][0])
+def _scale(ready: Prepared, name: str, exact: dict[str, tuple[float, float]]) -> float:
+    return scale_of(ready.scene.errors[name], exact[name][0])
 
 
-def _exact(stage: Stage, say: Callable[[str], None]) -> dict[str, tuple[float, float]]:
+def _exact(ready: Prepared, say: Callable[[str], None]) -> dict[str, tuple[float, float]]:
     """The exact value of each error, and what the error of a row may be due to it."""
-    found = {name: (figure_of(error.exact), 0.0) for name, error in stage.scene.errors.items() if error.exact != REFERENCE}
-    if len(found) == len(stage.scene.errors):
+    found = {name: (figure_of(error.exact), 0.0) for name, error in ready.scene.errors.items() if error.exact != REFERENCE}
+    if len(found) == len(ready.scene.errors):
         return found
-    levels = list(_reference_levels(stage, say))
-    for name, error in stage.scene.errors.items():
+    levels = list(_reference_levels(ready, say))
+    for name, error in ready.scene.errors.items():
         if error.exact == REFERENCE:
             before, finest = (level[name] for level in levels[-2:])
             found[name] = finest, abs(finest - before) / scale_of(error, finest)
     return found
 
 
-def _reference_levels(stage: Stage, say: Callable[[str], None]) -> Iterator[dict[str, float]]:
+def _reference_levels(ready: Prepared, say: Callable[[str], None]) -> Iterator[dict[str, float]]:
     """Values of the reference runs, from coarse to fine; kept, too."""
-    table = stage.config.output / "references.csv"
-    method = stage.scene.reference["method"]
-    settings = stage.scene.reference["settings"]
+    table = ready.config.output / "references.csv"
+    method = ready.scene.reference["method"]
+    settings = ready.scene.reference["settings"]
     names = {f"{method}, {setting_text(setting)}" for setting in settings}
     for setting in settings:
-        cell = Cell(stage.name, method, setting)
-        task = _task(stage, cell)
-        rows = references(stage.config)
+        cell = Cell(ready.name, method, setting)
+        task = _task(ready, cell)
+        rows = references(ready.config)
         row = next((row for row in rows if row["task"] == task), None)
         if row is None:
-            say(f"{stage.name}, reference: {method}, {setting_text(setting)}")
-            found = values(stage, stage.run(method, setting))
-            row = {"scene": stage.name, "setting": f"{method}, {setting_text(setting)}", "task": task,
+            say(f"{ready.name}, reference: {method}, {setting_text(setting)}")
+            found = values(ready, ready.run(method, setting))
+            row = {"scene": ready.name, "setting": f"{method}, {setting_text(setting)}", "task": task,
                    "values": "; ".join(f"{name}={value:.10g}" for name, value in found.items())}
-            others = [old for old in rows if old["scene"] != stage.name or old["setting"] in names - {row["setting"]}]
+            others = [old for old in rows if old["scene"] != ready.name or old["setting"] in names - {row["setting"]}]
             write_rows(table, REFERENCE_COLUMNS, [*others, row])
         yield parts(row["values"])
 
@@ -172,15 +177,16 @@ def parts(text: str) -> dict[str, float]:
     return {name: float(value) for name, _, value in (part.partition("=") for part in text.split("; ") if part)}
 
 
-def _task(stage: Stage, cell: Cell) -> str:
+def _task(ready: Prepared, cell: Cell) -> str:
     """What a row depends on. Other programs depend on what they are told, not on the build of talus."""
-    config, method = stage.config, stage.config.methods[cell.method]
-    about = (stage.scene.errors, stage.scene.frames, config.share, config.limit_s, stage.scene.reference, cell.setting)
+    config, method = ready.config, ready.config.methods[cell.method]
+    about = (ready.scene.errors, ready.scene.frames, config.share, config.limit_s, ready.scene.reference, cell.setting)
     if method.ours:
-        return digest(about, keys_of(config, cell.scene, cell.method, cell.setting), config.scenario(cell.scene), Path(stage.talus))
-    files = [Path(word) for word in command_of(method, stage.talus) if Path(word).is_file()]
-    modules = [path for word in method.command for path in Path(__file__).parents[1].glob(f"runners/{str(word).rpartition('.')[2]}.py")]
-    return digest(about, stage.as_json(cell.setting), *sorted({*files, *modules}))
+        return digest(about, keys_of(config, cell.scene, cell.method, cell.setting), config.scenario(cell.scene), Path(ready.talus))
+    files = [Path(word) for word in command_of(method, ready.talus) if Path(word).is_file()]
+    ours = [Path(__file__).parents[1] / f"runners/{str(word).rpartition('.')[2]}.py" for word in method.command]
+    modules = [path for own in ours if own.is_file() for path in (own, own.with_name("scene.py"))]
+    return digest(about, ready.as_json(cell.setting), *sorted({*files, *modules}))
 
 
 def _name(row: Row) -> tuple[str, str, str]:

@@ -34,8 +34,8 @@ def command_of(method: Method, talus: str) -> list[str] | None:
     return [found, *rest] if found else None
 
 
-class Stage:
-    """A scene of a config, ready for every method; blocks are cut once. Lives as long as its folder."""
+class Prepared:
+    """A scene of a config whose blocks have been cut, once for all methods. Lives as long as its folder."""
 
     def __init__(self, config: Config, name: str, talus: str, folder: str) -> None:
         self.config, self.name, self.talus, self.folder = config, name, talus, Path(folder)
