@@ -40,7 +40,7 @@ def draw(config: Config, chart: Chart, rows: Rows) -> Figure | None:
             return None
         for ax in list(axes.flat)[len(chart.panels):]:
             ax.remove()
-        return finish(figure, 1 + 2 * wide)
+        return finish(figure, 1 + wide)
 
 
 def _panel(ax: Axes, config: Config, panel: dict, rows: list, style: dict) -> bool:
@@ -64,8 +64,8 @@ def _panel(ax: Axes, config: Config, panel: dict, rows: list, style: dict) -> bo
         if narrow:
             axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     ax.set_xlabel("CPU time, s per simulated second")
-    ax.set_ylabel(scene.errors[error].label if error != LARGEST else next(iter(scene.errors.values())).label if len(scene.errors) == 1
-                  else "largest error of the scene")
+    one = next(iter(scene.errors)) if len(scene.errors) == 1 else error
+    ax.set_ylabel(scene.errors[one].label if one != LARGEST else f"relative error, largest of {', '.join(scene.errors)}")
     bare(ax, panel.get("title", scene.title))
     return bool(lines)
 
