@@ -30,7 +30,8 @@ int check_command(const CheckArguments& arguments);
 struct VerifyArguments {
     std::string path;
     std::vector<std::string> overrides;
-    std::string filter;
+    std::string filter, csv;
+    bool force = false;
 };
 int verify_command(const VerifyArguments& arguments);
 

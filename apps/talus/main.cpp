@@ -131,6 +131,8 @@ int program(int argc, char** argv) {
     CLI::App* verify_app = app.add_subcommand("verify", "run scenarios that say what they expect, and compare");
     verify_app->add_option("path", verify.path, "folder or file; default scenarios/verification");
     verify_app->add_option("--case", verify.filter, "only cases whose name contains this");
+    verify_app->add_option("--csv", verify.csv, "table of all expectations: measured, bar, passed");
+    verify_app->add_flag("--force", verify.force, "replace an existing table instead of choosing a numbered name");
     add_overrides(*verify_app, verify.overrides);
     verify_app->callback([&] { command = [&] { return verify_command(verify); }; });
 

@@ -7,6 +7,7 @@
 #include "output/reader.hpp"
 #include "scenario/reader.hpp"
 #include "simulation/run.hpp"
+#include "simulation/trial.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -61,6 +62,12 @@ Scenario read_noted(const RestartInfo& info) {
     const std::string name = overrides.back().substr(case_mark.size());
     overrides.pop_back();
     return row_named(read_cases_text(info.scenario_text, info.scenario_file, folder, overrides), name, info.scenario_file);
+}
+
+// Without what compares it with other cases, and what is said of runs that end early.
+std::vector<ExpectSpec> judged_alone(std::vector<ExpectSpec> expects) {
+    std::erase_if(expects, [](const ExpectSpec& e) { return !e.same_as.empty() || about_what_is_told(e); });
+    return expects;
 }
 
 // Why a restart file does not fit the scenario in it: a file that the scenario names is another one now, or else Talus is.
@@ -160,8 +167,8 @@ int run_command(const RunArguments& arguments) {
     check_probes(simulation);
     Recorder recorder(output, simulation, note(arguments));
     std::unique_ptr<Watch> watch;
-    if (!scenario.expect.empty())
-        watch = std::make_unique<Watch>(scenario.expect, simulation.model(), simulation.first_state());
+    const std::vector<ExpectSpec> expects = judged_alone(scenario.expect);
+    if (!expects.empty()) watch = std::make_unique<Watch>(expects, simulation.model(), simulation.first_state());
     return carry_out(simulation, recorder, watch.get(), Entry::begun);
 }
 

@@ -2,6 +2,8 @@
 
 #include "core/memory.hpp"
 #include "core/text.hpp"
+#include "simulation/deep_overlap.hpp"
+#include "simulation/trial.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -63,20 +65,8 @@ void print_contacts(const Simulation& simulation) {
 }
 
 void print_overlap(const Simulation& simulation) {
-    const Model& model = simulation.model();
-    const Contact* worst = nullptr;
-    for (const Contact& c : simulation.state().contacts.list)
-        if (c.touching && c.overlap > (worst ? worst->overlap : 0.0)) worst = &c;
-    if (!worst) return;
-    const BlockId a = model.parts.block[worst->part_a], b = model.parts.block[worst->part_b];
-    const double thin = std::min(model.parts.thickness[worst->part_a], model.parts.thickness[worst->part_b]);
-    const double share = worst->overlap / thin;
-    std::printf("  largest overlap %s, %.2g %% of the thinner part (%s), between blocks %d and %d at %s\n",
-                number(worst->overlap, "m").c_str(), 100.0 * share, number(thin, "m").c_str(), a, b,
-                place(worst->point + model.origin, thin).c_str());
-    if (share > 0.05)
-        std::printf("  warning: that is deep; a normal stiffness of %s would keep it below 1 %%\n",
-                    number(model.joints[worst->joint].kn * share / 0.01, "Pa/m").c_str());
+    const DeepOverlap deepest = deepest_overlap(simulation.model(), simulation.placed(), simulation.state());
+    if (deepest.contact) std::printf("  largest overlap %s\n", describe(simulation.model(), deepest).c_str());
 }
 
 void print_energy(const Simulation& simulation) {
@@ -89,11 +79,6 @@ void print_energy(const Simulation& simulation) {
                 number(e.gravity, "J").c_str());
     std::printf("  energy drift   %.2g of the largest of them; ledger closes to %.1g\n",
                 simulation.energy_drift() / turned_over, std::abs(simulation.ledger_error()) / turned_over);
-    if (simulation.energy_gain() > energy_alarm)
-        std::printf(
-            "  WARNING: blocks gained energy from nowhere, %.2g of the largest energy of the run: do not trust these "
-            "results; a shorter step (run.time_step, run.step_fraction) or contact damping is the remedy\n",
-            simulation.energy_gain());
 }
 
 void print_timing(const Simulation& simulation, double wall_time) {
@@ -125,13 +110,6 @@ std::string number(double value, const char* unit) {
     return text;
 }
 
-std::string out_of_time(const Simulation& simulation) {
-    const StageSpec& stage = simulation.stage();
-    return "stage " + stage.name + " did not come to equilibrium in its " + number(*stage.until.time, "s") +
-           ": unbalanced ratio " + number(unbalanced_ratio(simulation.model(), simulation.state())) + ", not below " +
-           number(*stage.until.equilibrium);
-}
-
 std::string block_and_place(const Model& model, BlockId b) {
     const std::string& name = model.blocks.name[b];
     return "block " + std::to_string(b) + (name.empty() ? "" : " '" + name + "'") + " at " +
@@ -153,6 +131,7 @@ void print_summary(const Simulation& simulation, double wall_time) {
     print_energy(simulation);
     std::printf("  unbalanced     %.2g of the mean contact force\n",
                 unbalanced_ratio(simulation.model(), simulation.state()));
+    for (const std::string& warning : run_warnings(simulation)) std::printf("  WARNING: %s\n", warning.c_str());
     if (simulation.state().step_halvings > 0)
         std::printf("  note: the step is halved %d times now, because blocks move fast against the thinnest one\n",
                     simulation.state().step_halvings);

@@ -14,7 +14,10 @@ namespace talus {
 namespace {
 
 // Edges that meet at less than 10 degrees may not use the face path: which of them is in contact would depend on history.
-constexpr double smooth_cos = 0.985;
+// Nor may those of corners sharper than 30 degrees: near such a tip the edge behind is as close as the face, which the
+// closed form does not know. A blade of 10 degrees that bounces in a box for a million steps gained 5 % of its energy by
+// that.
+constexpr double smooth_cos = 0.985, sharp_cos = -0.866;  // of the angle between the normals
 
 struct Work {  // of one chunk of blocks, J
     double friction = 0.0, damping = 0.0, released = 0.0;
@@ -275,9 +278,11 @@ private:
         return distance_potential(s.a, s.b, s.dx, s.dy);
     }
 
+    // Whether edge k may use the face path.
     static bool distinct(const PlacedPart& s, int k) {
         const Vec2 &n = s.normal(k), &p = s.normal(s.previous(k)), &q = s.normal(s.next(k));
-        return n.x() * p.x() + n.y() * p.y() < smooth_cos && n.x() * q.x() + n.y() * q.y() < smooth_cos;
+        const double before = n.x() * p.x() + n.y() * p.y(), after = n.x() * q.x() + n.y() * q.y();
+        return std::max(before, after) < smooth_cos && std::min(before, after) > sharp_cos;
     }
 
     FaceContact remembered_face(Contact& c, const Couple& s) {

@@ -5,9 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <memory>
 #include <sstream>
+#include <utility>
+#include <vector>
 
 namespace talus {
 namespace {
@@ -59,6 +62,8 @@ Reading of_motion(const ProbeSpec& spec, const Model& model, const State& state)
         return [point, size = std::sqrt(model.blocks.area[point.block])](const Model&, const State& s, const Gauges&) {
             return point.displacement(s).norm() / size;
         };
+    if (spec.quantity == "area")
+        return [b = point.block](const Model& m, const State&, const Gauges&) { return m.blocks.area[b]; };
     const auto part = component_of(spec);
     if (spec.quantity == "velocity")
         return [=](const Model&, const State& s, const Gauges&) { return part(point.velocity(s)); };
@@ -138,6 +143,40 @@ double angular_momentum(const Model& model, const State& state) {
     return sum;
 }
 
+double total_area(const Model& model, const State& state) {
+    double sum = 0.0;
+    for (BlockId b = 0; b < model.blocks.size(); ++b)
+        if (!state.removed[b]) sum += model.blocks.area[b];
+    return sum;
+}
+
+double largest_overlap(const State& state) {
+    double largest = 0.0;
+    for (const Contact& c : state.contacts.list)
+        if (c.touching) largest = std::max(largest, c.overlap);
+    return largest;
+}
+
+/// Counts the contacts that slide now and did not when it was read last, and the other way round.
+class SlipChanges {
+public:
+    double operator()(const State& state) {
+        if (state.step == 0) count_ = 0, sliding_.clear();
+        now_.clear();
+        for (const Contact& c : state.contacts.list)
+            if (c.sliding) now_.push_back({c.part_a, c.part_b});
+        changed_.clear();
+        std::set_symmetric_difference(now_.begin(), now_.end(), sliding_.begin(), sliding_.end(),
+                                      std::back_inserter(changed_));
+        std::swap(now_, sliding_);
+        return static_cast<double>(count_ += changed_.size());
+    }
+
+private:
+    std::vector<std::pair<PartId, PartId>> sliding_, now_, changed_;  // in the order of the list
+    std::size_t count_ = 0;
+};
+
 Reading of_scene(const ProbeSpec& spec) {
     if (spec.quantity == "momentum")
         return [part = component_of(spec)](const Model& m, const State& s, const Gauges&) { return part(momentum(m, s)); };
@@ -148,6 +187,14 @@ Reading of_scene(const ProbeSpec& spec) {
         return [per_size = spec.quantity == "relative_displacement"](const Model& m, const State& s, const Gauges&) {
             return largest_displacement(m, s, per_size);
         };
+    if (spec.quantity == "max_overlap")
+        return [](const Model&, const State& s, const Gauges&) { return largest_overlap(s); };
+    if (spec.quantity == "slip_changes")
+        return [changes = std::make_shared<SlipChanges>()](const Model&, const State& s, const Gauges&) {
+            return (*changes)(s);
+        };
+    if (spec.quantity == "area") return [](const Model& m, const State& s, const Gauges&) { return total_area(m, s); };
+    if (spec.quantity == "energy_gain") return [](const Model&, const State&, const Gauges& g) { return g.energy_gain; };
     if (spec.quantity == "time_step") return [](const Model&, const State&, const Gauges& g) { return g.time_step; };
     if (spec.quantity == "stable_step") return [](const Model&, const State&, const Gauges& g) { return g.stable_step; };
     return [](const Model& m, const State& s, const Gauges&) { return unbalanced_ratio(m, s); };

@@ -15,6 +15,7 @@ namespace talus {
 struct Gauges {
     Energies energies;
     double time_step = 0.0, stable_step = 0.0;  // s, in use; estimate of the largest stable one
+    double energy_gain = 0.0;                   // 1, see Simulation::energy_gain
 };
 
 /// Found once at the start and read at any step after; it follows its block or its joint, not its place.
@@ -34,8 +35,9 @@ struct Probe {
 /// displacement when the second block has moved that way. A joint that is open carries nothing.
 /// reaction, moment: sum of the contact forces on the block, and of their torques about its centroid.
 /// max_displacement, relative_displacement without a place: of free blocks, over their size (square root of the area).
-/// energy, energy_drift, momentum, angular_momentum (about the origin of the file), unbalanced, max_speed, time_step,
-/// stable_step: of the whole scene.
+/// area: of a block, or of all that are there.
+/// energy, energy_drift, energy_gain, momentum, angular_momentum (about the origin of the file), unbalanced, max_speed,
+/// max_overlap, slip_changes, time_step, stable_step: of the whole scene.
 Probe make_probe(const ProbeSpec& spec, const Model& model, const State& state);
 
 }  // namespace talus

@@ -95,6 +95,7 @@ std::string measure_of(const Quantity& quantity, const Cursor& at) {
     if (quantity.name == "acceleration") return "rate";
     if (quantity.name == "frequency" || quantity.name == "decrement" || quantity.name == "loop_area") return quantity.name;
     if (quantity.name == "stable" || quantity.name == "unstable") return "max";
+    if (quantity.name == "fault" || quantity.name == "warning") return quantity.name;
     if (at["at"].text() == "max" || at["at"].text() == "min") return at["at"].text();
     return "value";
 }
@@ -125,12 +126,17 @@ void check_times(const ExpectSpec& expect, const Quantity& quantity, const Curso
 }
 
 void check_bounds(const ExpectSpec& expect, const Quantity& quantity, const Cursor& at) {
-    const bool judged = quantity.name != "stable" && quantity.name != "unstable";
-    const bool bounded = at["value"].given() || at["above"].given() || at["below"].given();
-    if (!judged && bounded) at.fault(quantity.name + " takes no value, above or below");
-    if (judged && !bounded) at.fault("needs exactly one of value, above, below");
-    if (judged && at["limit"].given()) at["limit"].fault("goes with stable and unstable");
-    if ((expect.tolerance || expect.tolerance_absolute) && !expect.value) at.fault("a tolerance goes with value");
+    const bool told = quantity.name == "fault" || quantity.name == "warning";
+    const bool stands = quantity.name == "stable" || quantity.name == "unstable";
+    const bool likened = at["same_as"].given();
+    const bool bounded = at["value"].given() || likened || at["above"].given() || at["below"].given();
+    if ((told || stands) && bounded) at.fault(quantity.name + " takes no value, same_as, above or below");
+    if (!told && !stands && !bounded) at.fault("needs exactly one of value, same_as, above, below");
+    if (!stands && at["limit"].given()) at["limit"].fault("goes with stable and unstable");
+    if (told != at["says"].given()) at["says"].fault(told ? "is missing: words of the text" : "goes with fault and warning");
+    const bool tolerance = expect.tolerance || expect.tolerance_absolute;
+    if (tolerance && !expect.value && !likened) at.fault("a tolerance goes with value and same_as");
+    if (likened && !tolerance) at["same_as"].fault("needs tolerance or tolerance_absolute");
     if (!expect.value) return;
     if (!expect.tolerance && !expect.tolerance_absolute) at["value"].fault("needs tolerance or tolerance_absolute");
     if (*expect.value == 0.0 && expect.tolerance && !expect.tolerance_absolute)
@@ -139,6 +145,8 @@ void check_bounds(const ExpectSpec& expect, const Quantity& quantity, const Curs
 
 void set_bounds(ExpectSpec& expect, const Quantity& quantity, const Cursor& at) {
     expect.value = at["value"].maybe_number();
+    expect.same_as = at["same_as"].text();
+    expect.says = at["says"].text();
     expect.above = at["above"].maybe_number();
     expect.below = at["below"].maybe_number();
     expect.tolerance = at["tolerance"].maybe_number();

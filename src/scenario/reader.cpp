@@ -152,6 +152,22 @@ Value with_row(const Value& tree, const Value& row, const std::string& path, con
     return changed;
 }
 
+/// Expectations can only be the same as those of a case that stands above, at the same place of its list.
+void check_likened(const std::vector<Case>& rows, std::vector<Fault>& faults) {
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        const std::vector<ExpectSpec>& expects = rows[i].scenario.expect;
+        for (std::size_t k = 0; k < expects.size(); ++k) {
+            if (expects[k].same_as.empty()) continue;
+            const bool there = std::any_of(
+                rows.begin(), rows.begin() + static_cast<std::ptrdiff_t>(i),
+                [&](const Case& row) { return row.name == expects[k].same_as && row.scenario.expect.size() > k; });
+            if (!there)
+                faults.push_back({expects[k].where, "expect[" + std::to_string(k) + "].same_as",
+                                  "no case `" + expects[k].same_as + "` above expects something at this place of its list"});
+        }
+    }
+}
+
 std::vector<Case> cases_of(Input input, const std::vector<std::string>& overrides) {
     std::vector<Fault> faults;
     Value tree = read_tree(input, overrides, faults);
@@ -179,6 +195,7 @@ std::vector<Case> cases_of(Input input, const std::vector<std::string>& override
             }
         }
     }
+    if (faults.empty()) check_likened(all, faults);
     if (!faults.empty()) report(std::move(faults));
     return all;
 }

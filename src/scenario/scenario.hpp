@@ -187,7 +187,7 @@ struct RunSpec {
     std::optional<double> time_step;  // s; absent: auto
     Where time_step_where;
     double step_fraction = 0.8;  // of the rigorous bound, when automatic
-    bool unchecked = false;      // accept a time step above the stable estimate
+    bool unchecked = false;      // accept a time step above the stable estimate, and blocks that pass through each other
     DampingSpec damping;
     std::string search = "auto";
     std::optional<double> skin;  // m; absent: automatic
@@ -238,12 +238,14 @@ struct RecordSpec {
 };
 
 struct ExpectSpec {
-    ProbeSpec probe;                                   // what is observed
-    std::string measure;                               // value, max, min, rate, frequency, decrement, loop_area, holds
-    std::optional<ProbeSpec> against;                  // second axis of loop_area
-    std::optional<double> at;                          // s; absent: end
+    ProbeSpec probe;                   // what is observed
+    std::string measure;               // value, max, min, rate, frequency, decrement, loop_area, fault, warning
+    std::optional<ProbeSpec> against;  // second axis of loop_area
+    std::optional<double> at;          // s; absent: end
     std::optional<std::pair<double, double>> between;  // s
     std::optional<double> value, above, below;
+    std::string same_as;              // case whose verdict at the same place of its list is the value; empty: none
+    std::string says;                 // what a fault or warning must have in its text
     std::optional<double> tolerance;  // relative to |value|
     std::optional<double> tolerance_absolute;
     Where where;

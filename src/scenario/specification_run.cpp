@@ -98,7 +98,8 @@ Shape run() {
          {"solver", solver(), fallback("auto"), "how motion is integrated"},
          {"time_step", time_step(), fallback("auto"), "automatic: a share of the rigorous bound"},
          {"step_fraction", number("1", positive), fallback("0.8"), "share of the rigorous bound in an automatic step"},
-         {"unchecked", boolean(), fallback("false"), "accept a time step above the stable estimate"},
+         {"unchecked", boolean(), fallback("false"),
+          "accept a time step above the stable estimate, and joints so soft that blocks pass through each other"},
          {"damping", damping(), fallback("{}"), "of the run"},
          {"search",
           choice({"auto", "safe-regions", "verlet", "isu", "isu-separated", "isu-parallel", "dess", "dess-fused", "direct",
@@ -135,8 +136,8 @@ Shape record() {
 Shape expectation() {
     return table(
         "expectation",
-        "One number that must come out. Of `value` (with a tolerance), `above` and `below` exactly one is given, "
-        "and none for `stable` and `unstable`.",
+        "One number that must come out. Of `value` and `same_as` (with a tolerance), `above` and `below` exactly one is "
+        "given, and none for `stable`, `unstable`, `fault` and `warning`.",
         joined({{{"quantity", choice(names_of_quantities(false)), required, "see the table of quantities"}},
                 direction(),
                 place(),
@@ -148,13 +149,17 @@ Shape expectation() {
                  {"between", list_of(number("s", not_negative), 2, 2), optional,
                   "`[t1, t2]`: two times since the last reset; must be given for acceleration"},
                  {"value", number(), optional, "expected value, in the unit of the quantity"},
+                 {"same_as", text(), optional,
+                  "name of an earlier case: the value is what the expectation at the same place of its list measured"},
                  {"tolerance", number("1", not_negative), optional, "allowed deviation relative to |value|"},
                  {"tolerance_absolute", number("", not_negative), optional,
                   "allowed deviation in the unit of the quantity; of two tolerances the larger counts"},
                  {"above", number(), optional, "lower bound"},
                  {"below", number(), optional, "upper bound"},
-                 {"limit", number("m", positive), derived("1e-3 of the size of the block"), "of stable and unstable"}}}),
-        {{Rule::Count::at_most_one, {"value", "above", "below"}}, {Rule::Count::at_most_one, {"point", "joint", "block"}}});
+                 {"limit", number("m", positive), derived("1e-3 of the size of the block"), "of stable and unstable"},
+                 {"says", text(), optional, "of fault and warning, which need it: words that must stand in the text"}}}),
+        {{Rule::Count::at_most_one, {"value", "same_as", "above", "below"}},
+         {Rule::Count::at_most_one, {"point", "joint", "block"}}});
 }
 
 }  // namespace talus::spec

@@ -56,8 +56,22 @@ Verdict judge(const ExpectSpec& e, const std::string& name, const Signal& observ
     return v;
 }
 
+bool about_what_is_told(const ExpectSpec& e) { return e.measure == "fault" || e.measure == "warning"; }
+
+Verdict judge(const ExpectSpec& e, const Told& told) {
+    const auto has = [&](const std::string& text) { return text.find(e.says) != std::string::npos; };
+    const bool there = e.measure == "fault" ? !told.fault.empty() && has(told.fault)
+                                            : std::any_of(told.warnings.begin(), told.warnings.end(), has);
+    const double measured = there ? 1.0 : 0.0;
+    return {e.measure + " `" + e.says + "`", measured, 1.0, 1.0 - measured, 0.0, there};
+}
+
 Watch::Watch(const std::vector<ExpectSpec>& expects, const Model& model, const State& state) {
     for (const ExpectSpec& e : expects) {
+        if (about_what_is_told(e)) {
+            watched_.push_back({e, {}, {}});
+            continue;
+        }
         Watched w{e, {make_probe(e.probe, model, state)}, {}};
         if (e.against) w.probes.push_back(make_probe(*e.against, model, state));
         w.signals.resize(w.probes.size());
@@ -83,11 +97,12 @@ void Watch::record(const Model& model, const State& state, const Gauges& gauges)
     }
 }
 
-std::vector<Verdict> Watch::judge() const {
+std::vector<Verdict> Watch::judge(const Told& told) const {
     std::vector<Verdict> verdicts;
     for (const Watched& w : watched_)
-        verdicts.push_back(
-            talus::judge(w.expect, w.probes[0].name, w.signals[0], w.signals.size() > 1 ? w.signals[1] : Signal{}));
+        verdicts.push_back(w.probes.empty() ? talus::judge(w.expect, told)
+                                            : talus::judge(w.expect, w.probes[0].name, w.signals[0],
+                                                           w.signals.size() > 1 ? w.signals[1] : Signal{}));
     return verdicts;
 }
 

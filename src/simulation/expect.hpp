@@ -20,6 +20,16 @@ struct Verdict {
     const char* asked = "expected";  // or "above", "below"
 };
 
+/// What a run had to say beside its numbers.
+struct Told {
+    std::string fault;                  // why it was refused or ended early; empty: it came to its end
+    std::vector<std::string> warnings;  // about the scene, and about how the run went
+};
+
+/// Whether what was expected to be told was: a fault, or a warning. Measured: 1 told, 0 not.
+Verdict judge(const ExpectSpec& expect, const Told& told);
+bool about_what_is_told(const ExpectSpec& expect);
+
 /// What one expectation says about signals already recorded; `against` is the second axis of loop_area.
 ///   value      the signal at `at`, or at its end           rate       mean rate of change between two times
 ///   max, min   over `between`, or over all                 frequency  Hz; decrement: per cycle; loop_area: J/m2
@@ -29,17 +39,17 @@ Verdict judge(const ExpectSpec& expect, const std::string& name, const Signal& o
 /// Records what a list of expectations needs. Times count since the last reset of the clock, where recording starts anew.
 class Watch {
 public:
-    /// Throws InputError as make_probe does.
+    /// Throws InputError as make_probe does. Expectations `same_as` a case must have got their value.
     Watch(const std::vector<ExpectSpec>& expects, const Model& model, const State& state);
     bool needs_energies() const;
     /// Once at the start and after every step; gauges may be empty unless needed.
     void record(const Model& model, const State& state, const Gauges& gauges);
-    std::vector<Verdict> judge() const;
+    std::vector<Verdict> judge(const Told& told = {}) const;
 
 private:
     struct Watched {
         ExpectSpec expect;
-        std::vector<Probe> probes;    // one, or two for loop_area
+        std::vector<Probe> probes;    // one; two for loop_area; none for what is told
         std::vector<Signal> signals;  // one for each probe
     };
     std::vector<Watched> watched_;

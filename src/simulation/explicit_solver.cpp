@@ -1,6 +1,7 @@
 // The explicit method: kick-drift-kick with the springs and the strength of the joints.
 #include "core/errors.hpp"
 #include "dynamics/motion.hpp"
+#include "simulation/deep_overlap.hpp"
 #include "simulation/simulation.hpp"
 
 #include <algorithm>
@@ -31,10 +32,19 @@ void Simulation::step_explicit(double dt) {
     kick(model_, state_.load, state_.motion, dt / 2);  // v(t + dt/2) -> v(t + dt)
     drive(model_, state_.stage_time, state_.motion);
     check_speed();
+    if (!scenario_.run.unchecked && time_to_look(state_.total_steps, speed_, dt, stable_.thinnest)) check_overlaps();
     state_.step_halvings = step_halvings(state_.stage_step, state_.step_halvings, speed_, stable_.thinnest);
     const double whole = std::ldexp(state_.stage_step, -state_.step_halvings) * (1.0 - 1e-6);
     // Not after a step that was cut: what leapfrog keeps is another sum for each length of step.
-    if (dt >= whole && (state_.total_steps % energy_interval == 0 || time_step() < whole)) check_energy();
+    if (dt >= whole && (state_.total_steps % energy_interval == 0 || time_step() < whole)) check_energy(energy_explosion);
+}
+
+// Blocks that pass through each other because the step is too long have gained energy first: then that is the cause to tell.
+void Simulation::check_overlaps() {
+    const std::string trouble = no_room_left(model_, placed_, state_);
+    if (trouble.empty()) return;
+    check_energy(energy_alarm);
+    throw DivergenceError(trouble);
 }
 
 void Simulation::update_forces(double dt) {  // dt = 0 once at the start: no slip
@@ -54,7 +64,7 @@ void Simulation::update_forces(double dt) {  // dt = 0 once at the start: no sli
 // springs. The sum of energies itself swings by the term with F, by more than the energy there is when the step is near its
 // limit. Dashpots count with half of what is booked: in the step in which a contact begins, their force acts at its end
 // only.
-void Simulation::check_energy() {
+void Simulation::check_energy(double most) {
     const Energies e = energies();
     Ledger& ledger = state_.ledger;
     const double there = ledger.total0 + e.gravity + e.loads + e.driven;
@@ -63,7 +73,7 @@ void Simulation::check_energy() {
     const double swing = e.kinetic - kinetic_energy_of_ledger(model_, state_, dt);
     const double gained = e.total() - ledger.total0 - swing - 0.5 * e.contact_damping;
     ledger.gained = std::max(ledger.gained, gained);
-    if (gained <= energy_explosion * ledger.largest) return;
+    if (gained <= most * ledger.largest) return;
     std::ostringstream text;
     text << "blocks gained " << gained << " J from nowhere, the largest energy of the run is " << ledger.largest
          << " J: t = " << state_.time << " s, step " << state_.total_steps << " of " << state_.stage_step

@@ -58,6 +58,7 @@ Gauges gauges_of(const Simulation& simulation, bool energies) {
     if (energies) gauges.energies = simulation.energies();
     gauges.time_step = simulation.time_step();
     gauges.stable_step = simulation.stable().estimate;
+    gauges.energy_gain = simulation.energy_gain();
     return gauges;
 }
 
@@ -174,6 +175,7 @@ void check_probes(const Simulation& simulation) {
     for (const HistorySpec& history : simulation.scenario().record.history)
         probes.insert(probes.end(), history.probes.begin(), history.probes.end());
     for (const ExpectSpec& expect : simulation.scenario().expect) {
+        if (about_what_is_told(expect)) continue;
         probes.push_back(expect.probe);
         if (expect.against) probes.push_back(*expect.against);
     }

@@ -45,6 +45,7 @@ public:
     const Scenario& scenario() const { return scenario_; }
     const Model& model() const { return model_; }
     const State& state() const { return state_; }
+    const Placed& placed() const { return placed_; }
     State first_state() const { return state_at_start(model_); }
     const StageSpec& stage() const { return stages_[state_.stage]; }
     int stage_count() const { return static_cast<int>(stages_.size()); }
@@ -97,7 +98,8 @@ private:
     void update_forces(double dt);
     void refresh();
     void check_speed() const;
-    void check_energy();
+    void check_energy(double most);  // throws if more than this share of the largest energy came from nowhere
+    void check_overlaps();
     void lap(Part part) { seconds_[static_cast<int>(part)] += watch_.lap(); }
 
     const Scenario scenario_;

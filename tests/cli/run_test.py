@@ -174,11 +174,11 @@ run: {until: {time: 0.01}}
 
     def test_3_if_the_step_makes_energy_and_the_frames_before_stay(self):
         self.write("stack.yaml", STACK)
-        _, err = self.talus("run", "stack.yaml", "--set", "run.time_step=3e-3", "--set", "record.frames.every=0.02", code=3)
+        _, err = self.talus("run", "stack.yaml", "--set", "run.time_step=3e-3", "--set", "record.frames.every=0.005", code=3)
         self.assertIn("from nowhere", err)
         self.assertIn("diverged", self.talus("info", "stack.h5")[0])
         self.assertGreaterEqual(int(self.attribute("stack.h5", "frames").split(",")[0]), 4)
-        self.assertGreater(float(self.attribute("stack.h5", "energy_gain")), 10)
+        self.assertGreater(float(self.attribute("stack.h5", "energy_gain")), 0.05)
 
     def test_a_warning_if_energy_is_gained_also_before_the_last_reset(self):
         stages = "stages: [{name: ring, time_step: %s, until: {time: 1}, reset: true}]\n"

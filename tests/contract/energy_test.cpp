@@ -98,8 +98,8 @@ materials: {rock: {density: 2500}}
 joints: {smooth: {normal_stiffness: 1e8, shear_stiffness: 1e8}}
 blocks:
   - {rectangle: {corner: [0, -1], size: [4, 1]}, held: true}
-  - {rectangle: {corner: [1, 0], size: [1, 0.02]}}
-  - {rectangle: {corner: [1.5, 0.3], size: [1, 1]}, velocity: [0, -8]}
+  - {rectangle: {corner: [0.2, 0], size: [1, 0.02]}}
+  - {rectangle: {corner: [1.5, 0.3], size: [1, 1]}, velocity: [0, -9]}
 run: {until: {time: 0.05037}, time_step: 0.0006}
 )"));
     int most = 0, fewest = 99;
@@ -299,7 +299,9 @@ run: {until: {time: 5}, unchecked: true}
     CHECK_THROWS_AS(WholeRun(scenario).to_the_end(), DivergenceError);
 }
 
-TEST_CASE("blocks that a long step throws apart have gained energy, and end the run once it is ten times the largest") {
+TEST_CASE(
+    "blocks that a long step throws apart have gained energy, and end the run once it is too much or they fly into each "
+    "other") {
     // A chain of six blocks that can only move up and down, gravity switched on: they ring, and part.
     Scenario scenario = scenario_of(R"(
 gravity: [0, -9.81]
@@ -323,5 +325,5 @@ run: {until: {time: 1}, unchecked: true}
     scenario.run.time_step = 2.0 * 2.0 / omega;
     WholeRun far_above(scenario);
     CHECK_THROWS_AS(far_above.to_the_end(), DivergenceError);
-    CHECK(far_above.simulation().energy_gain() > energy_explosion);
+    CHECK(far_above.simulation().energy_gain() > energy_alarm);
 }

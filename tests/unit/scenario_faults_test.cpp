@@ -203,10 +203,11 @@ TEST_CASE("values that contradict each other are refused") {
 
 TEST_CASE("an expectation that cannot be judged is refused") {
     const std::string at = "f.yaml:6 expect[0]";
-    check_fault(expecting("quantity: spin, block: cube"), at, "exactly one of value, above, below");
+    check_fault(expecting("quantity: spin, block: cube"), at, "exactly one of value, same_as, above, below");
     check_fault(expecting("quantity: spin, block: cube, value: 1"), at + ".value", "needs tolerance");
     check_fault(expecting("quantity: spin, block: cube, value: 0, tolerance: 0.1"), at + ".tolerance", "tolerance_absolute");
-    check_fault(expecting("quantity: spin, block: cube, above: 1, below: 2"), at, "takes only one of value, above, below");
+    check_fault(expecting("quantity: spin, block: cube, above: 1, below: 2"), at,
+                "takes only one of value, same_as, above, below");
     check_fault(expecting("quantity: spin, above: 1"), at, "spin needs: point or block");
     check_fault(expecting("quantity: slip, block: cube, above: 1"), at, "slip needs: joint");
     check_fault(expecting("quantity: unbalanced, block: cube, above: 1"), at, "unbalanced needs: none");

@@ -1,0 +1,41 @@
+// Contacts pressed so deep that their forces cannot be trusted: found, told, and in the end refused.
+#pragma once
+
+#include "model/model.hpp"
+#include "model/placed.hpp"
+#include "model/state.hpp"
+
+#include <cstdint>
+#include <string>
+
+namespace talus {
+
+struct DeepOverlap {
+    const Contact* contact = nullptr;  // none: no contact is pressed
+    double depth = 0.0;                // m, shortest way that would part the two
+    double thickness = 0.0;            // m, smallest width of the thinner part
+    double room = 0.0;                 // m, depth at which the two begin to pass through each other
+    double share() const { return contact ? depth / thickness : 0.0; }
+};
+
+/// The contact that has used most of its room. Forces push back until the middles of both parts meet, at (t_a + t_b)/2, and
+/// then out on the other side; the way that parts them is never longer than that. Three quarters of the thinner part are
+/// taken: half of it is common where rock falls on soft joints, all of it may be reached for an instant only. A part of a
+/// concave block may be pressed in by its whole width, for what lies behind it is the same block.
+DeepOverlap deepest_overlap(const Model& model, const Placed& placed, const State& state);
+
+/// "0.02 m, 40 % of the thinner part (0.05 m), between block 0 `wall` and block 1 at (x, y)".
+std::string describe(const Model& model, const DeepOverlap& overlap);
+
+/// "a normal stiffness of at least 4e11 Pa/m of joint `j` would keep it near 1 %".
+std::string remedy(const Model& model, const DeepOverlap& overlap);
+
+/// Whether the overlaps are to be looked at after this step: so often that two blocks at `speed` (m/s) come closer by no
+/// more than a quarter of `thinnest` (m) from look to look, and at least every 128 steps. It depends on the state alone, so
+/// that a run that was resumed looks at the same steps.
+bool time_to_look(std::int64_t step, double speed, double dt, double thinnest);
+
+/// What to say if two parts have no room left; empty if all have.
+std::string no_room_left(const Model& model, const Placed& placed, const State& state);
+
+}  // namespace talus

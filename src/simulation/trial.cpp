@@ -1,0 +1,90 @@
+#include "simulation/trial.hpp"
+
+#include "core/errors.hpp"
+#include "core/text.hpp"
+#include "simulation/deep_overlap.hpp"
+#include "simulation/run.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace talus {
+namespace {
+
+constexpr double deep = 0.05;  // share of the thinner part: contact forces are still right, positions off by as much
+
+std::vector<Verdict> judge_unbuilt(const std::vector<ExpectSpec>& expects, const Told& told) {
+    std::vector<Verdict> verdicts;
+    for (const ExpectSpec& e : expects)
+        verdicts.push_back(about_what_is_told(e) ? judge(e, told) : judge(e, e.probe.quantity, Signal{}));
+    return verdicts;
+}
+
+}  // namespace
+
+bool Trial::passed() const {
+    return trouble.empty() && std::all_of(verdicts.begin(), verdicts.end(), [](const Verdict& v) { return v.passed; });
+}
+
+std::vector<ExpectSpec> with_values(const std::vector<ExpectSpec>& expects, const std::map<std::string, Trial>& earlier) {
+    std::vector<ExpectSpec> all = expects;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        if (all[i].same_as.empty()) continue;
+        const auto found = earlier.find(all[i].same_as);
+        const bool there = found != earlier.end() && i < found->second.verdicts.size();
+        all[i].value = there ? found->second.verdicts[i].measured : std::nan("");
+    }
+    return all;
+}
+
+Trial try_out(const Scenario& scenario, const std::map<std::string, Trial>& earlier) {
+    const std::vector<ExpectSpec> expects = with_values(scenario.expect, earlier);
+    Told told;
+    std::optional<Simulation> simulation;
+    std::optional<Watch> watch;
+    try {
+        simulation.emplace(scenario, build(scenario));
+        watch.emplace(expects, simulation->model(), simulation->first_state());
+        RunOptions options;
+        options.watch = &*watch;
+        options.out_of_time = [&](const Simulation& s) { told.fault = out_of_time(s); };
+        run(*simulation, options);
+    } catch (const DivergenceError& error) {
+        told.fault = std::string("diverged: ") + error.what();
+    } catch (const InputError& error) {
+        told.fault = error.what();
+    }
+    if (simulation) {
+        told.warnings = simulation->report().warnings;
+        const std::vector<std::string> later = run_warnings(*simulation);
+        told.warnings.insert(told.warnings.end(), later.begin(), later.end());
+    }
+    Trial trial{watch ? watch->judge(told) : judge_unbuilt(expects, told), told.fault, scenario.run.solver};
+    if (simulation) trial.solver = simulation->stage().solver;
+    for (std::size_t i = 0; i < expects.size(); ++i)
+        if (expects[i].measure == "fault" && trial.verdicts[i].passed) trial.trouble.clear();
+    return trial;
+}
+
+std::vector<std::string> run_warnings(const Simulation& simulation) {
+    std::vector<std::string> all;
+    const DeepOverlap deepest = deepest_overlap(simulation.model(), simulation.placed(), simulation.state());
+    if (deepest.share() > deep)
+        all.push_back("blocks lie deep in each other: overlap " + describe(simulation.model(), deepest) + "; " +
+                      remedy(simulation.model(), deepest));
+    if (simulation.energy_gain() > energy_alarm)
+        all.push_back("blocks gained energy from nowhere, " + number(simulation.energy_gain()) +
+                      " of the largest energy of the run: do not trust these results; a shorter step (run.time_step, "
+                      "run.step_fraction) or contact damping is the remedy");
+    return all;
+}
+
+std::string out_of_time(const Simulation& simulation) {
+    const StageSpec& stage = simulation.stage();
+    return "stage " + stage.name + " did not come to equilibrium in its " + number(*stage.until.time) +
+           " s: unbalanced ratio " + number(unbalanced_ratio(simulation.model(), simulation.state())) + ", not below " +
+           number(*stage.until.equilibrium);
+}
+
+}  // namespace talus
