@@ -11,12 +11,13 @@ from pathlib import Path
 from types import ModuleType
 
 import talus_lab
-from talus_lab import bench, chart, plot
+from talus_lab import bench, chart, plot, stability
 from talus_lab.chart.exchange import cut, scene_json
 from talus_lab.program import find_talus
 from talus_lab.run import ResultError, Run, open_run
 from talus_lab.study.picture import save_small
 
+NOT_MET = 1  # as in talus
 BAD_INPUT = 2  # exit code for anything the user gave, as in talus
 INTERRUPTED = 130
 
@@ -98,6 +99,19 @@ def study_command(options: argparse.Namespace) -> int:
     return 0
 
 
+def stability_command(options: argparse.Namespace) -> int:
+    config = stability.read_config(options.config)
+    stability.fill_page(config.page.read_text(encoding="utf-8"), config, [])  # a fault of the page before minutes of running
+    if options.draw:
+        checks = stability.read_table(config.output / "stability.csv")
+    else:
+        checks = stability.verify(config, find_talus(), lambda line: print(line, flush=True))
+    checks += stability.tests(config, find_talus())
+    config.page.write_text(stability.fill_page(config.page.read_text(encoding="utf-8"), config, checks), encoding="utf-8")
+    print(config.page)
+    return 0 if all(check.passed for check in checks) else NOT_MET
+
+
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="talus-lab", description="Reads the results of talus and draws them; measures speed and accuracy.")
     parser.add_argument("--version", action="version", version=f"talus-lab {talus_lab.__version__}")
@@ -125,6 +139,11 @@ def _parser() -> argparse.ArgumentParser:
 
     _study(commands, "bench", bench, "measure contact searches as a config says; table, charts and the numbers of its page", "studies")
     _study(commands, "chart", chart, "draw error against CPU time for the scenes and methods of a config; table, charts and page", "scenes")
+
+    s = commands.add_parser("stability", help="run the stability suite and make the table of its page")
+    s.add_argument("config", type=Path, metavar="CONFIG.yaml")
+    s.add_argument("--draw", action="store_true", help="the table from what was measured last, and nothing else")
+    s.set_defaults(command=stability_command)
     return parser
 
 
