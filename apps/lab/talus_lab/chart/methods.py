@@ -74,7 +74,7 @@ class Prepared:
     def _talus(self, method: str, setting: Setting, folder: Path, states: bool) -> Done:
         frames = self.scene.frames if states else 1
         keys = {**keys_of(self.config, self.name, method, setting), "record": f"{{frames: {{count: {frames}}}, contacts: false}}", "expect": "[]"}
-        if self.config.share < 1.0:
+        if self.config.share < 1.0 and "run.until" not in keys:  # which says that it does not end by time
             keys["run.until.time"] = format(self.seconds, ".10g")
         out = folder / "run.h5"
         call([self.talus, "run", str(self.config.scenario(self.name)), "-o", str(out), *sets(keys)], self.config.limit_s)
