@@ -210,7 +210,10 @@ int check_command(const CheckArguments& arguments) {
     print_cut(simulation);
     print_joints(simulation);
     print_settlement(simulation);
-    std::printf("solver         explicit: the only one yet; right where joint stiffness is given\n");
+    std::printf("solver         %s\n",
+                simulation.stage().solver == "rigid"
+                    ? "rigid: blocks and joints without any give; right for what falls, slides, rocks or stands"
+                    : "explicit: right where the stiffness of joints counts");
     print_cost(simulation);
     for (const std::string& warning : simulation.report().warnings) std::printf("warning: %s\n", warning.c_str());
     return ok;

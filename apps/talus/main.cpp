@@ -24,7 +24,7 @@ void add_overrides(CLI::App& command, std::vector<std::string>& overrides) {
             option, [&overrides, key](const std::string& value) { overrides.push_back(std::string(key) + "=" + value); },
             help);
     };
-    shorthand("--solver", "run.solver", "auto or explicit");
+    shorthand("--solver", "run.solver", "auto, explicit or rigid");
     shorthand("--search", "run.search", "how neighbours are found; never changes a result");
     shorthand("--threads", "run.threads", "never changes a result");
     shorthand("--until", "run.until.time", "s, length of the run");

@@ -118,6 +118,11 @@ std::string block_and_place(const Model& model, BlockId b) {
 
 void print_stage(const Simulation& simulation) {
     const StableStep& stable = simulation.stable();
+    if (simulation.stage().solver != "explicit") {
+        std::printf("%s: solver %s, step %s\n", simulation.stage().name.c_str(), simulation.stage().solver.c_str(),
+                    number(simulation.state().stage_step, "s").c_str());
+        return;
+    }
     std::printf("%s: step %s (rigorous bound %s, limit estimated at %s)\n", simulation.stage().name.c_str(),
                 number(simulation.state().stage_step, "s").c_str(), number(stable.bound, "s").c_str(),
                 number(stable.estimate, "s").c_str());

@@ -51,7 +51,8 @@ struct JointLaw {
     double tan_friction_residual = 0.0, cohesion_residual = 0.0;
     double tan_dilation = 0.0;
     double dilation_cutoff_slip = std::numeric_limits<double>::infinity();  // m
-    bool weakens = false;  // strength drops to its residual value at the first slip
+    double restitution = 0.0;  // of the speed of approach, in impacts of rigid blocks
+    bool weakens = false;      // strength drops to its residual value at the first slip
 };
 
 struct Joint : JointLaw {

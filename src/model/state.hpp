@@ -42,6 +42,7 @@ struct Contact {
     double slip = 0.0;             // m, path slipped so far
     double slip_sum = 0.0;         // m, signed sum: sense of the slip
     double dilation = 0.0;         // m, how far slip has opened it
+    double moment = 0.0;           // N m, of the pressure about the middle of the contact; kept by the rigid solver only
     Vec2 point = Vec2::Zero();     // m, centre of pressure
     Vec2 normal = Vec2::Zero();    // unit, from a to b
 };

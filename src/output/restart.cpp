@@ -24,7 +24,7 @@ namespace {
                                   released, gained, largest] = ledger;
     [[maybe_unused]] const auto& [part_a, part_b, joint, face, edge_a, edge_b, touching, slipped, sliding, alive, length,
                                   overlap, normal_force, shear_force, shear_energy, strength, slip, slip_sum, dilation,
-                                  point, normal] = contact;
+                                  moment, point, normal] = contact;
 }
 
 template <class T>
@@ -154,6 +154,7 @@ void transfer_contacts(Archive& to, List& list) {
     to.column("contacts/slip", "m", list, &Contact::slip);
     to.column("contacts/slip_sum", "m", list, &Contact::slip_sum);
     to.column("contacts/dilation", "m", list, &Contact::dilation);
+    to.column("contacts/moment", "N m", list, &Contact::moment);
     to.column("contacts/point", "m", list, &Contact::point);
     to.column("contacts/normal", "1", list, &Contact::normal);
 }

@@ -64,6 +64,7 @@ JointSpec convert_joint(const std::string& name, const Cursor& at) {
     joint.tension = at["tension"].number();
     joint.dilation_angle = at["dilation_angle_deg"].angle();
     joint.dilation_cutoff_slip = at["dilation_cutoff_slip"].maybe_number();
+    joint.restitution = at["restitution"].number();
     joint.cells = static_cast<int>(at["cells"].number());
     if (const Cursor residual = at["residual"]; residual.given()) {
         const Cursor friction = residual["friction_angle_deg"];
@@ -163,6 +164,7 @@ Scenario convert(const Cursor& at) {
     scenario.record = convert_record(at["record"]);
     scenario.expect = convert_expect(at["expect"]);
     check_scene(scenario, at);
+    check_solvers(scenario, at);
     return scenario;
 }
 

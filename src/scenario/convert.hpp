@@ -23,6 +23,9 @@ std::vector<ExpectSpec> convert_expect(const Cursor& expect);
 /// Name of a block, of repeated blocks or of a region; else a fault with the nearest one.
 std::string convert_block_name(const Cursor& name);
 
+/// Faults for what the named solvers cannot represent.
+void check_solvers(const Scenario& scenario, const Cursor& at);
+
 /// Everything but text, canonical JSON and hash. Coordinates are relative to the origin of the reading.
 Scenario convert(const Cursor& scenario);
 

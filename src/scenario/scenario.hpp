@@ -35,6 +35,7 @@ struct JointSpec {
     double friction_angle = 0.0, cohesion = 0.0, tension = 0.0;  // rad, Pa, Pa
     double dilation_angle = 0.0;                                 // rad
     std::optional<double> dilation_cutoff_slip;                  // m, no dilation beyond this slip
+    double restitution = 0.0;                                    // of the speed of approach; rigid solver only
     std::optional<ResidualSpec> residual;                        // absent: strength does not weaken by slip
     int cells = 2;                                               // bond cells per joint face
 };

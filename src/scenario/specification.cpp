@@ -87,6 +87,8 @@ Shape joint_keys(const std::string& title, const std::string& meaning, bool chan
         {"dilation_angle_deg", number("deg", friction_range), zero, "not above the friction angle, nor the residual one"},
         {"dilation_cutoff_slip", number("m", positive), change ? optional : derived("no cut-off"),
          "no dilation beyond this slip"},
+        {"restitution", number("1", {0.0, 1.0, false, false}), zero,
+         "share of the speed of approach with which blocks rebound; for the rigid solver only"},
         {"residual", residual, change ? optional : derived("as peak"), "strength after the first slip or break"}};
     // Not in a change: the cells of the faces are counted when the scene is built.
     if (!change)

@@ -24,7 +24,7 @@ Shape damping() {
 
 Shape time_step() { return either({choice({"auto"}), number("s", positive)}); }
 
-Shape solver() { return choice({"auto", "explicit"}, {"rigid", "static"}); }
+Shape solver() { return choice({"auto", "explicit", "rigid"}, {"static"}); }
 
 Shape change() {
     return table("change", "New values that hold from the start of the stage to the end of the run.",

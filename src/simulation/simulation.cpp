@@ -4,6 +4,7 @@
 #include "core/memory.hpp"
 #include "dynamics/motion.hpp"
 #include "model/part_boxes.hpp"
+#include "rigid/scratch.hpp"
 
 #ifdef _OPENMP
 #include <omp.h>
@@ -91,11 +92,15 @@ Simulation::Simulation(const Scenario& scenario, Scene scene, State saved) : Sim
     stable_ = stable_step(model_, placed_, state_);
 }
 
+Simulation::Simulation(Simulation&&) noexcept = default;
+Simulation::~Simulation() = default;
+
 // ---- one step -------------------------------------------------------------------------------------------------------
 
 const Simulation::Method& Simulation::method() const {
     static constexpr std::array methods{
-        Method{"explicit", &Simulation::update_forces, &Simulation::begin_explicit, &Simulation::step_explicit},
+        Method{"explicit", &Simulation::update_forces, &Simulation::begin_explicit, &Simulation::step_explicit, true},
+        Method{"rigid", &Simulation::forces_rigid, &Simulation::begin_rigid, &Simulation::step_rigid, false},
     };
     return *std::ranges::find(methods, stage().solver, [](const Method& m) { return std::string_view(m.name); });
 }
@@ -124,6 +129,20 @@ void Simulation::check_speed() const {
     }
 }
 
+void Simulation::check_energy(const Energies& e, double gained, double most) {
+    Ledger& ledger = state_.ledger;
+    const double there = ledger.total0 + e.gravity + e.loads + e.driven;
+    ledger.largest = std::max({ledger.largest, there, std::abs(e.gravity), std::abs(e.loads), std::abs(e.driven)});
+    ledger.gained = std::max(ledger.gained, gained);
+    if (gained <= most * ledger.largest) return;
+    std::ostringstream text;
+    text << "blocks gained " << gained << " J from nowhere, the largest energy of the run is " << ledger.largest
+         << " J: t = " << state_.time << " s, step " << state_.total_steps << " of " << state_.stage_step << " s";
+    if (method().springs) text << " (limit estimated at " << stable_.estimate << " s)";
+    text << ": leave the time step out, or look at the last frames";
+    throw DivergenceError(text.str());
+}
+
 double Simulation::recorded_time() const {
     double length = 0.0;
     for (int i = first_recorded_; i < stage_count(); ++i) length += stages_[i].until.time.value_or(0.0);
@@ -139,10 +158,10 @@ double Simulation::time_step() const {
 
 // ---- pairs ----------------------------------------------------------------------------------------------------------
 
-void Simulation::refresh() {
-    boxes_renewed_ += rebox(model_, state_, skin_, placed_, boxes_, reboxed_);
+void Simulation::refresh(double skin) {
+    boxes_renewed_ += rebox(model_, state_, skin, placed_, boxes_, reboxed_);
     search_->find(boxes_, pairs_);
-    refresh_contacts(model_, placed_, pairs_, reboxed_, skin_, state_, contact_index_);
+    refresh_contacts(model_, placed_, pairs_, reboxed_, skin, state_, contact_index_);
     ++refreshes_;
 }
 
@@ -152,6 +171,7 @@ void Simulation::drop_scratch() {
     placed_ = {};
     search_ = make_search(scenario_.run.search);
     pairs_.clear();
+    rigid_.reset();
 }
 
 // ---- stages ---------------------------------------------------------------------------------------------------------
@@ -258,7 +278,7 @@ void Simulation::begin_stage() {
     (this->*method().forces)(0.0);
     check_stages();
     (this->*method().begin)();
-    state_.ledger.kinetic0 += talus::ledger_error(model_, state_, state_.stage_step);
+    state_.ledger.kinetic0 += ledger_error();
     state_.ledger.total0 = energies().total() - drift;
     release_unused_memory();
 }
@@ -297,7 +317,7 @@ bool Simulation::stage_over() {
 // ---- numbers --------------------------------------------------------------------------------------------------------
 
 Energies Simulation::energies() const {
-    const StrainEnergy strain = strain_energy(model_, placed_, state_);
+    const StrainEnergy strain = method().springs ? strain_energy(model_, placed_, state_) : StrainEnergy{};
     const Ledger& l = state_.ledger;
     Energies e;
     e.kinetic = kinetic_energy(model_, state_);
@@ -318,6 +338,8 @@ double Simulation::energy_gain() const {
     return std::max(state_.earlier_gain, ledger.gained > 0.0 ? ledger.gained / ledger.largest : 0.0);
 }
 
-double Simulation::ledger_error() const { return talus::ledger_error(model_, state_, state_.stage_step); }
+double Simulation::ledger_error() const {
+    return talus::ledger_error(model_, state_, method().springs ? state_.stage_step : 0.0);
+}
 
 }  // namespace talus

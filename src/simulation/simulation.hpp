@@ -11,9 +11,14 @@
 
 #include <array>
 #include <memory>
+#include <span>
 #include <string>
 
 namespace talus {
+
+namespace rigid {
+struct Scratch;
+}
 
 enum class Part { move, place, search, contacts, sum, account };  // of a step, for the timing
 inline constexpr std::array<const char*, 6> part_names{"move", "place", "search", "contacts", "sum", "account"};
@@ -31,6 +36,8 @@ public:
     Simulation(const Scenario& scenario, Scene scene);
     /// Goes on from a saved state of the same scenario, bit for bit.
     Simulation(const Scenario& scenario, Scene scene, State saved);
+    Simulation(Simulation&&) noexcept;
+    ~Simulation();
 
     /// Prepares stage `state().stage`: deletes blocks, changes properties, chooses the step. Called by run() at the start of
     /// every stage, not after a restart in its middle. Throws InputError if a time step of the user is above the stable
@@ -86,19 +93,32 @@ private:
         void (Simulation::*forces)(double dt);
         void (Simulation::*begin)();          // of a stage: chooses state_.stage_step, or refuses
         void (Simulation::*step)(double dt);  // moves state_ on by dt, with time, ledger and speed_
+        bool springs;                         // contacts store energy, and the ledger takes velocities of half steps
     };
     const Method& method() const;  // of this stage
 
     void begin_explicit();
     void step_explicit(double dt);
+    void check_energy_explicit(double most);
+
+    void forces_rigid(double dt);
+    void begin_rigid();
+    void step_rigid(double dt);
+    void half_step_rigid(double dt);
+    void renew_pairs_rigid(double reach);
+    bool break_bonds_rigid(double dt);
+    double rigid_resolution(double dt) const;
+    double fall_rigid() const;
+    void account_rigid(const Motion& start, std::span<const Vec2> middle, double dt);
 
     void apply_stage();  // what a stage changes in the model; idempotent
     void delete_blocks();
     void check_stages() const;
     void update_forces(double dt);
-    void refresh();
+    void refresh(double skin);
     void check_speed() const;
-    void check_energy(double most);  // throws if more than this share of the largest energy came from nowhere
+    /// Throws if more than `most` of the largest energy was `gained` (J) since the start, from nowhere.
+    void check_energy(const Energies& now, double gained, double most);
     void check_overlaps();
     void lap(Part part) { seconds_[static_cast<int>(part)] += watch_.lap(); }
 
@@ -119,6 +139,7 @@ private:
     std::vector<std::uint8_t> reboxed_;  // [nb] 1 = got new boxes at the last refresh
     std::vector<Force> load_before_, damping_before_;
     double skin_ = 0.0;
+    std::unique_ptr<rigid::Scratch> rigid_;  // of the rigid solver, while it is at work
 
     StableStep stable_;
     bool equilibrium_ = false;

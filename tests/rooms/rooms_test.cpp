@@ -21,9 +21,10 @@ const std::map<std::string, std::set<std::string>> may_enter = {
     {"model", {"core", "geometry", "scenario"}},
     {"contact", {"core", "geometry", "model"}},
     {"dynamics", {"core", "geometry", "model"}},
+    {"rigid", {"core", "geometry", "model", "contact"}},
     {"terms", {"core", "model"}},
     {"output", {"core", "model"}},
-    {"simulation", {"core", "geometry", "scenario", "model", "contact", "dynamics", "terms", "output"}},
+    {"simulation", {"core", "geometry", "scenario", "model", "contact", "dynamics", "rigid", "terms", "output"}},
     {"apps", {"core", "scenario", "model", "output", "simulation"}},
 };
 

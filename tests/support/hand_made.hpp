@@ -121,8 +121,8 @@ inline State random_state(const Model& m, std::uint64_t seed, int contacts) {
         c.edge_a = below(m.corners.size() + 1) - 1, c.edge_b = below(m.corners.size() + 1) - 1;
         c.touching = flag(), c.slipped = flag(), c.sliding = flag(), c.alive = i % 4 != 3;
         c.length = std::abs(number()), c.overlap = number(), c.normal_force = number(), c.shear_force = number();
-        c.strength = number(), c.shear_energy = number(), c.slip = number(), c.slip_sum = number(), c.dilation = number(),
-        c.point = vector(), c.normal = vector();
+        c.strength = number(), c.shear_energy = number(), c.moment = number(), c.slip = number(), c.slip_sum = number(),
+        c.dilation = number(), c.point = vector(), c.normal = vector();
         s.contacts.list.push_back(c);
         s.contacts.reaction.push_back({vector(), number(), number()});
     }

@@ -1,0 +1,323 @@
+#include "rigid/touches.hpp"
+
+#include "contact/contacts.hpp"
+#include "contact/separation.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace talus::rigid {
+namespace {
+
+// Shares of the smaller thickness of two parts. Touching: what the cut of a rock leaves between neighbours by rounding is
+// 1e-12 of it. Narrow: two corners that overlap by less along the joint pass each other; larger, and blocks that slide over
+// a row of others catch on steps of that height, smaller, and they catch on what the solver leaves of overlap.
+constexpr double touching = 1e-9, narrow = 1e-5;
+
+Vec2 velocity_at(const Velocity& v, const Vec2& arm) { return Vec2(v.x, v.y) + v.spin * perp(arm); }
+
+double normal_velocity(const Touch& c, std::span<const Velocity> v, int end) {
+    const Velocity &a = v[c.a], &b = v[c.b];
+    return c.nx * (b.x - a.x) + c.ny * (b.y - a.y) + c.arm_b[end] * b.spin - c.arm_a[end] * a.spin;
+}
+
+double tangent_velocity(const Touch& c, std::span<const Velocity> v) {
+    const Velocity &a = v[c.a], &b = v[c.b];
+    return c.nx * (b.y - a.y) - c.ny * (b.x - a.x) + c.arm_b[2] * b.spin - c.arm_a[2] * a.spin;
+}
+
+/// m, of the end from the middle of the whole stretch, along the tangent.
+double place(const Manifold& m, int end) {
+    if (m.count == 2) return end == 0 ? -0.5 * m.length : 0.5 * m.length;
+    return m.single_low ? -0.5 * m.length : 0.5 * m.length;
+}
+
+bool fits_bond(const Model& model, const Contact& c) { return c.face >= 0 && model.faces[c.face].bonded; }
+
+}  // namespace
+
+double Touches::fastest(const Model& model, const Motion& motion, const Bodies& bodies) {
+    double fastest = 0.0;
+    for (BlockId b = 0; b < model.blocks.size(); ++b) {
+        const int q = bodies.body_of[b];
+        const Velocity& v = bodies.velocity[q];
+        const double arm = (motion.position[b] - bodies.position[q]).norm() + model.blocks.radius[b];
+        fastest = std::max(fastest, std::hypot(v.x, v.y) + std::abs(v.spin) * arm);
+    }
+    return fastest;
+}
+
+void Touches::find(const Model& model, const Placed& placed, const State& state, const Bodies& bodies,
+                   std::span<const Velocity> before, double fall, double dt) {
+    const int n = static_cast<int>(state.contacts.list.size()), nb = model.blocks.size();
+    if (static_cast<int>(hint_.size()) != n) hint_.assign(n, -1);
+    found_.resize(n);
+    speed_.resize(nb);
+#pragma omp parallel for schedule(static) if (nb > 1000)
+    for (int b = 0; b < nb; ++b) {
+        const int q = bodies.body_of[b];
+        const Velocity& v = bodies.velocity[q];
+        speed_[b] =
+            velocity_at(v, placed.block[b].position - bodies.position[q]).norm() + std::abs(v.spin) * model.blocks.radius[b];
+    }
+#pragma omp parallel for schedule(static) if (n > 1000)
+    for (int i = 0; i < n; ++i) {
+        const Contact& c = state.contacts.list[i];
+        const BlockId a = model.parts.block[c.part_a], b = model.parts.block[c.part_b];
+        found_[i].count = 0;
+        if (bodies.body_of[a] == bodies.body_of[b]) continue;
+        const double thickness = std::min(model.parts.thickness[c.part_a], model.parts.thickness[c.part_b]);
+        const double reach = 0.5 * dt * (speed_[a] + speed_[b]) + touching * thickness;
+        found_[i] = find_manifold(PlacedPart(model, placed, c.part_a), PlacedPart(model, placed, c.part_b),
+                                  placed.block[b].position - placed.block[a].position, reach, narrow * thickness, hint_[i]);
+    }
+
+    touches_.clear(), manifold_.clear(), slot_.clear(), rebound_.clear();
+    for (int i = 0; i < n; ++i) {
+        const Manifold& m = found_[i];
+        if (m.count == 0) continue;
+        const Contact& known = state.contacts.list[i];
+        const Joint& joint = model.joints[known.joint];
+        const BlockId block_a = model.parts.block[known.part_a];
+        Touch c{};
+        c.a = bodies.body_of[block_a];
+        c.b = bodies.body_of[model.parts.block[known.part_b]];
+        const Softness &soft_a = bodies.softness[c.a], &soft_b = bodies.softness[c.b];
+        if (soft_a.x + soft_a.y + soft_a.spin + soft_b.x + soft_b.y + soft_b.spin == 0.0) continue;
+        c.ends = m.count;
+        c.nx = m.normal.x(), c.ny = m.normal.y();
+        const Vec2 from_a = placed.block[block_a].position - bodies.position[c.a];
+        const Vec2 to_b = bodies.position[c.b] - bodies.position[c.a];
+        const int nearest = m.count == 2 && m.gap[1] < m.gap[0] ? 1 : 0;
+        for (int end = 0; end < m.count; ++end) {
+            const Vec2 arm = m.point[end] + from_a;
+            c.arm_a[end] = cross(arm, m.normal);
+            c.arm_b[end] = cross(arm - to_b, m.normal);
+            if (end != nearest) continue;
+            c.arm_a[2] = cross(arm, perp(m.normal));
+            c.arm_b[2] = cross(arm - to_b, perp(m.normal));
+        }
+        prepare(c, bodies.softness);
+        for (int end = 0; end < m.count; ++end) {
+            const double u = normal_velocity(c, bodies.velocity, end), gap = m.gap[end];
+            const bool closes = gap + 0.5 * dt * u <= 0.0 || gap <= fall;
+            c.least[end] = closes ? 0.0 : -2.0 * gap / dt;
+        }
+        c.friction = known.slipped && joint.weakens ? joint.tan_friction_residual : joint.tan_friction;
+        if (fits_bond(model, known)) {  // it has slipped, or nothing of it is left
+            const JointFace& face = model.faces[known.face];
+            const double bonded = std::min(intact_length(model, state, known), m.length);
+            const double rest = std::max(0.0, std::min(face.s1 - face.s0, m.length) - bonded);
+            c.cohesion = (joint.cohesion * bonded + (joint.weakens ? joint.cohesion_residual * rest : 0.0)) * dt;
+        }
+        // What acted before; a moment about the middle tells how it was shared by the ends.
+        if (known.normal_force > 0.0 && known.normal.dot(m.normal) > 0.99) {
+            const double couple = known.moment / m.length;
+            if (m.count == 2) {
+                // One end alone: the stretch has hardly the length any more with which the moment was taken.
+                const double rounding = 1e-3 * known.normal_force;
+                const double first = 0.5 * known.normal_force - couple, second = 0.5 * known.normal_force + couple;
+                c.p[0] = first > rounding ? first * dt : 0.0;
+                c.p[1] = second > rounding ? second * dt : 0.0;
+            } else {
+                c.p[0] = known.normal_force * dt;
+            }
+            const double bound = c.friction * (c.p[0] + c.p[1]) + c.cohesion;
+            c.p[2] = std::clamp(known.shear_force * dt, -bound, bound);
+        }
+        rebound_.push_back(joint.restitution);
+        touches_.push_back(c);
+        manifold_.push_back(m);
+        slot_.push_back(i);
+    }
+    find_impacts(bodies, before, fall, dt);
+}
+
+// What closes with more than the speed of two steps of free fall hits at a time within the step. Until then all else acts on
+// the two bodies as before: a corner about which a block has turned carries weight until the next one lands, or the block
+// would lose the share of a step each time.
+void Touches::find_impacts(const Bodies& bodies, std::span<const Velocity> before, double fall, double dt) {
+    impact_.assign(bodies.size(), 1.0);
+    bool any = false;
+    for (std::size_t i = 0; i < touches_.size(); ++i) {
+        Touch& c = touches_[i];
+        for (int end = 0; end < c.ends; ++end) {
+            const double gap = manifold_[i].gap[end], change = normal_velocity(c, before, end);
+            const double approach = -std::min(change, normal_velocity(c, bodies.velocity, end));
+            if (c.p[end] > 0.0 || -change * dt <= 4.0 * fall || std::abs(gap) > 0.5 * dt * approach) continue;
+            const double share = std::clamp(0.5 - gap / (change * dt), 0.0, 1.0);  // of the step that is over then
+            for (const int body : {c.a, c.b}) impact_[body] = std::min(impact_[body], share);
+            any = true;
+            if (rebound_[i] == 0.0) continue;
+            const double gained = normal_velocity(c, bodies.velocity, end) - change;  // by weight and loads
+            c.least[end] = std::max(0.0, (1.0 - share) * gained - rebound_[i] * (change + share * gained));
+        }
+    }
+    for (Touch& c : touches_) {
+        const double share = std::min(any ? impact_[c.a] : 1.0, any ? impact_[c.b] : 1.0);
+        for (int k = 0; k < 3 && share < 1.0; ++k) {
+            c.earlier[k] = share * c.p[k];
+            c.p[k] -= c.earlier[k];
+        }
+    }
+}
+
+void Touches::add_earlier() {
+    pressed_.resize(2 * touches_.size());
+    for (std::size_t i = 0; i < touches_.size(); ++i) {
+        Touch& c = touches_[i];
+        for (int end = 0; end < 2; ++end) pressed_[2 * i + end] = c.p[end] > 0.0;
+        for (int k = 0; k < 3; ++k) c.p[k] += c.earlier[k];
+    }
+}
+
+// An impulse p at the time t_i of the step moves a body by (dt - t_i) M^-1 J^T p, not by half of dt. The time follows from
+// the gap in the middle of the step and the speed of approach.
+void Touches::take_to_time_of_impact(const Bodies& bodies, std::span<const Velocity> before, double exact, double dt,
+                                     std::span<Velocity> displacement) const {
+    for (std::size_t i = 0; i < touches_.size(); ++i) {
+        const Touch& c = touches_[i];
+        double later[3] = {0.0, 0.0, 0.0}, pressed = 0.0;  // N s x s
+        for (int end = 0; end < c.ends; ++end) {
+            const double gap = manifold_[i].gap[end], approach = -normal_velocity(c, before, end);
+            pressed += c.p[end];
+            if (std::abs(gap) > exact && std::abs(gap) <= 0.51 * dt * approach) later[end] = -gap / approach * c.p[end];
+        }
+        if (later[0] == 0.0 && later[1] == 0.0) continue;
+        later[2] = (c.p[2] - c.earlier[2]) * (later[0] + later[1]) / pressed;
+        apply(c, later, bodies.softness, displacement);
+    }
+}
+
+bool Touches::correct(const Bodies& bodies, std::span<const Velocity> before, std::span<const Velocity> after, double exact,
+                      double dt, std::vector<Velocity>& displacement) {
+    constexpr int sweeps = 20;  // what is left comes in the next step
+    struct Want {
+        double least;
+        bool pressed;
+        double push = 0.0;
+    };
+    std::vector<std::array<Want, 2>> want(touches_.size());
+    double worst = 0.0;
+    for (std::size_t i = 0; i < touches_.size(); ++i) {
+        const Touch& c = touches_[i];
+        for (int end = 0; end < c.ends; ++end) {
+            const double gap = manifold_[i].gap[end];
+            Want& w = want[i][end];
+            w.pressed = pressed_[2 * i + end];
+            w.least = w.pressed
+                          ? -gap * (c.least[end] > 0.0 ? 1.0 + rebound_[i] : 1.0) - std::min(0.5 * dt * c.least[end], 0.0)
+                          : -(gap + 0.5 * dt * normal_velocity(c, after, end));
+            worst = std::max(worst, w.pressed ? std::abs(w.least) : w.least);
+        }
+    }
+    if (worst <= exact) return false;
+    displacement.assign(bodies.size(), {});
+    take_to_time_of_impact(bodies, before, exact, dt, displacement);
+    for (int sweep = 0; sweep < sweeps; ++sweep) {
+        double largest = 0.0;
+        const auto one = [&](std::size_t i) {
+            Touch& c = touches_[i];
+            for (int end = 0; end < c.ends; ++end) {
+                Want& w = want[i][end];
+                const double k = end == 0 ? c.k00 : c.k11;
+                double push = w.push - (normal_velocity(c, displacement, end) - w.least) / k;
+                if (!w.pressed) push = std::max(push, 0.0);
+                double change[3] = {0.0, 0.0, 0.0};
+                change[end] = push - w.push;
+                w.push = push;
+                if (change[end] == 0.0) continue;
+                largest = std::max(largest, std::abs(change[end]) * k);
+                apply(c, change, bodies.softness, displacement);
+            }
+        };
+        for (std::size_t i = 0; i < touches_.size(); ++i) one(i);
+        for (std::size_t i = touches_.size(); i-- > 0;) one(i);
+        if (largest <= std::max(0.1 * exact, 1e-3 * worst)) break;
+    }
+    return true;
+}
+
+void Touches::add_forces(const Model& model, const Placed& placed, const State& state, double dt,
+                         std::span<Force> sum) const {
+    for (std::size_t i = 0; i < touches_.size(); ++i) {
+        const Touch& c = touches_[i];
+        const Manifold& m = manifold_[i];
+        const Contact& known = state.contacts.list[slot_[i]];
+        const BlockId a = model.parts.block[known.part_a], b = model.parts.block[known.part_b];
+        const Vec2 to_b = placed.block[b].position - placed.block[a].position;
+        const int nearest = m.count == 2 && m.gap[1] < m.gap[0] ? 1 : 0;
+        for (int end = 0; end < m.count; ++end) {
+            Vec2 force = c.p[end] / dt * m.normal;
+            if (end == nearest) force += c.p[2] / dt * perp(m.normal);
+            sum[a].force -= force;
+            sum[a].torque -= cross(m.point[end], force);
+            sum[b].force += force;
+            sum[b].torque += cross(m.point[end] - to_b, force);
+        }
+    }
+}
+
+void Touches::record(const Model& model, const Placed& placed, const Bodies& bodies, std::span<const Velocity> before,
+                     std::span<const Velocity> after, double dt, double resolution, State& state) const {
+    std::vector<Contact>& list = state.contacts.list;
+    std::size_t next = 0;
+    const int n = static_cast<int>(list.size());
+    for (int i = 0; i < n; ++i) {
+        Contact& c = list[i];
+        const BlockId a = model.parts.block[c.part_a], b = model.parts.block[c.part_b];
+        if (bodies.body_of[a] == bodies.body_of[b]) continue;  // a bond: see bonds.hpp
+        const bool found = next < slot_.size() && slot_[next] == i;
+        const Touch* t = found ? &touches_[next] : nullptr;
+        const Manifold* m = found ? &manifold_[next] : nullptr;
+        if (found) ++next;
+        const double pressed = t ? t->p[0] + (t->ends == 2 ? t->p[1] : 0.0) : 0.0;
+        if (!t || (pressed == 0.0 && t->p[2] == 0.0)) {
+            const bool remembers = c.slipped || (c.face >= 0 && !fits_bond(model, c));
+            state.contacts.reaction[i] = {};
+            if (remembers && separation(PlacedPart(model, placed, c.part_a), PlacedPart(model, placed, c.part_b),
+                                        placed.block[b].position.x() - placed.block[a].position.x(),
+                                        placed.block[b].position.y() - placed.block[a].position.y())
+                                     .distance <= memory_reach(model, c.part_a, c.part_b)) {
+                c.touching = c.sliding = 0;
+                c.length = c.normal_force = c.shear_force = c.strength = c.moment = 0.0;
+            } else {
+                c = Contact{.part_a = c.part_a, .part_b = c.part_b, .joint = c.joint};
+            }
+            continue;
+        }
+        const double bound = t->friction * pressed + t->cohesion;
+        const double u0 = tangent_velocity(*t, before), u1 = tangent_velocity(*t, after);
+        c.touching = c.alive = 1;
+        c.sliding = std::abs(t->p[2]) >= bound * (1.0 - 1e-9) && std::abs(u1) > resolution;
+        c.edge_a = m->count == 2 ? m->edge_a : -1;
+        c.edge_b = m->count == 2 ? m->edge_b : -1;
+        c.length = m->count == 2 ? m->length : 0.0;
+        c.normal = m->normal;
+        c.overlap = m->count == 2 ? -0.5 * (m->gap[0] + m->gap[1]) : -m->gap[0];
+        c.normal_force = pressed / dt;
+        c.shear_force = t->p[2] / dt;
+        c.shear_energy = 0.0;
+        c.strength = bound / dt;
+        c.moment = (t->p[0] * place(*m, 0) + (m->count == 2 ? t->p[1] * place(*m, 1) : 0.0)) / dt;
+        const double share = m->count == 2 && pressed > 0.0 ? t->p[1] / pressed : 0.0;
+        const Vec2 arm = m->count == 2 ? Vec2(m->point[0] + share * (m->point[1] - m->point[0])) : m->point[0];
+        c.point = placed.block[a].position + arm;
+        if (c.sliding) {
+            const double slid = 0.5 * dt * (u0 + u1);
+            c.slip += std::abs(slid);
+            c.slip_sum += slid;
+            c.slipped = 1;
+        }
+        const Vec2 force = c.normal_force * m->normal + c.shear_force * perp(m->normal);
+        const Vec2 from_b = c.point - placed.block[b].position;
+        state.contacts.reaction[i] = {force, -cross(arm, force), cross(from_b, force)};
+        state.ledger.friction -= 0.5 * (u0 + u1) * t->p[2];
+        for (int end = 0; end < t->ends; ++end)
+            state.ledger.contact_damping -=
+                0.5 * t->p[end] * (normal_velocity(*t, before, end) + normal_velocity(*t, after, end));
+    }
+}
+
+}  // namespace talus::rigid

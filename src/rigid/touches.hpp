@@ -1,0 +1,60 @@
+// From the list of contacts to what the solver of impulses works on, and back.
+#pragma once
+
+#include "model/placed.hpp"
+#include "rigid/bodies.hpp"
+#include "rigid/manifold.hpp"
+
+namespace talus::rigid {
+
+/// All touches of one step. `velocity` of the bodies in each call is that of the moment the name says.
+class Touches {
+public:
+    /// Looks at every pair of the contact list whose blocks belong to different bodies, whose velocities hold weight and
+    /// loads but no contacts; `before`: at the start of the step. Impulses of the step before are taken over (dt times the
+    /// forces of the list). `fall`: m, how far blocks fall within a step; what is nearer counts as touching, or gaps of that
+    /// size would close and open for ever.
+    void find(const Model& model, const Placed& placed, const State& state, const Bodies& bodies,
+              std::span<const Velocity> before, double fall, double dt);
+
+    /// m/s, no point of any block is faster: twice the way of half a step is how far apart two may be to matter in it.
+    static double fastest(const Model& model, const Motion& motion, const Bodies& bodies);
+
+    std::span<Touch> list() { return touches_; }
+    std::span<const Touch> list() const { return touches_; }
+
+    /// Moves the bodies so that what presses lies on each other and nothing overlaps (`after`: velocities with the
+    /// impulses, `before`: at the start of the step); writes the displacements, and returns false if there is nothing to
+    /// do: no gap or overlap is larger than `exact` (m).
+    bool correct(const Bodies& bodies, std::span<const Velocity> before, std::span<const Velocity> after, double exact,
+                 double dt, std::vector<Velocity>& displacement);
+
+    /// Writes forces, slip and places into the contact list; adds what friction and impacts took to the ledger.
+    void record(const Model& model, const Placed& placed, const Bodies& bodies, std::span<const Velocity> before,
+                std::span<const Velocity> after, double dt, double resolution, State& state) const;
+
+    /// Adds the forces of all contacts, on each block about its centroid.
+    void add_forces(const Model& model, const Placed& placed, const State& state, double dt, std::span<Force> sum) const;
+
+    void forget_hints() { hint_.clear(); }  // the contact list has been renewed
+
+    /// Adds to the impulses that were found those that acted before an impact.
+    void add_earlier();
+
+private:
+    void find_impacts(const Bodies& bodies, std::span<const Velocity> before, double fall, double dt);
+    void take_to_time_of_impact(const Bodies& bodies, std::span<const Velocity> before, double exact, double dt,
+                                std::span<Velocity> displacement) const;
+
+    std::vector<Touch> touches_;
+    std::vector<Manifold> manifold_;     // [touches]
+    std::vector<double> rebound_;        // [touches] restitution
+    std::vector<double> impact_;         // [nq] share of the step before the first impact
+    std::vector<std::uint8_t> pressed_;  // [2 touches] an end that presses after the step
+    std::vector<int> slot_;              // [touches] in the contact list
+    std::vector<int> hint_;              // [contacts] see find_manifold
+    std::vector<Manifold> found_;        // [contacts]
+    std::vector<double> speed_;          // [nb] m/s
+};
+
+}  // namespace talus::rigid

@@ -1,0 +1,252 @@
+// The rigid solver: blocks without any give, impulses instead of springs. Drift, kick, drift: contacts are where the blocks
+// are in the middle of the step, so constant acceleration, sliding and rocking are second order in the step.
+#include "core/errors.hpp"
+#include "dynamics/motion.hpp"
+#include "rigid/scratch.hpp"
+#include "simulation/simulation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace talus {
+namespace {
+
+// Change of any relative velocity in the last sweep over that of free fall within a step: forces are then known to about as
+// much of a block's weight, and in a stack of 100 to a hundred times it. Ten times more, and a stack of 40 leans by
+// millimetres in a minute; ten times less costs a third more sweeps.
+constexpr double tolerance = 1e-6;
+constexpr int sweeps = 200;         // of a step: what is not there by then is taken up by the next
+constexpr int first_sweeps = 5000;  // when nothing is known of the forces yet
+
+// Of the time in which a block falls freely through its own size. The error of a rocking or rolling block is then 1e-5 of
+// its swing; half of it makes a quarter of the error.
+constexpr double share_of_fall = 1.0 / 80.0;
+
+// Of the way of free fall in a step: gaps and overlaps below are left alone. 1e-8 m for blocks of 1 m; half or twice of it
+// changes the cost of a resting mass and nothing that can be seen.
+constexpr double settled = 1e-4;
+
+// Contacts are looked for ahead of the motion, so nothing can pass through a part in less than the way of its whole width;
+// of that, twice as much may be used as by the explicit solver, which looks back.
+constexpr double wider = 2.0;
+
+constexpr int energy_interval = 100;
+constexpr int most_breaks = 50;  // rounds of breaking bonds within a step
+
+using rigid::Bodies;
+using rigid::Velocity;
+
+Vec2 at(const Velocity& v, const Vec2& arm) { return Vec2(v.x, v.y) + v.spin * perp(arm); }
+
+void move_bodies(Bodies& bodies, std::span<const Velocity> v, double dt) {
+    for (int q = 0; q < bodies.size(); ++q) bodies.position[q] += dt * Vec2(v[q].x, v[q].y);
+}
+
+}  // namespace
+
+void Simulation::begin_rigid() {
+    stable_ = stable_step(model_, placed_, state_);
+    const StageSpec& now = stage();
+    if (now.time_step) {
+        state_.stage_step = *now.time_step;
+        return;
+    }
+    double smallest = std::numeric_limits<double>::infinity();
+    for (BlockId b = 0; b < model_.blocks.size(); ++b)
+        if (!model_.blocks.held(b) && !state_.removed[b]) smallest = std::min(smallest, model_.blocks.area[b]);
+    const double size = std::isfinite(smallest) ? std::sqrt(smallest) : 1.0;
+    const double gravity = std::hypot(model_.gravity_x(0.0), model_.gravity_y(0.0));
+    double dt = share_of_fall * std::sqrt(size / std::max(gravity, 1.0));
+    if (now.until.time) dt = *now.until.time / std::ceil(*now.until.time / dt);
+    state_.stage_step = dt;
+}
+
+void Simulation::forces_rigid(double) {
+    rigid_ = std::make_unique<rigid::Scratch>();  // a new stage: other blocks, joints or boxes
+    placed_.boxed.clear();
+    renew_pairs_rigid(0.0);
+}
+
+/// Every pair closer than `reach` (m) is in the list then.
+void Simulation::renew_pairs_rigid(double reach) {
+    rigid::Scratch& r = *rigid_;
+    if (r.skin < std::max(skin_, 2.0 * reach)) {
+        r.skin = std::max(skin_, 4.0 * reach);
+        placed_.boxed.clear();
+    }
+    const bool left = place(model_, state_.motion, r.skin - reach, placed_);
+    lap(Part::place);
+    if (left) refresh(r.skin);
+    r.renewed |= left;
+    lap(Part::search);
+}
+
+void Simulation::step_rigid(double dt) {
+    if (!rigid_) rigid_ = std::make_unique<rigid::Scratch>();
+    rigid::Scratch& r = *rigid_;
+    const Motion start = state_.motion;
+    bool unfinished = false;  // bonds broke in the last round that there is
+    for (int round = 0;; ++round) {
+        if (!r.bodies) {
+            r.bodies = rigid::join_bonded(model_, state_);
+            r.renewed = true;
+        }
+        half_step_rigid(dt);
+        const bool broke = break_bonds_rigid(dt);
+        unfinished = broke && round == most_breaks;
+        if (!broke || unfinished) break;
+        state_.motion = start;
+        r.bodies.reset();
+    }
+    Bodies& bodies = *r.bodies;
+    const double resolution = 10.0 * rigid_resolution(dt);
+    r.touches.record(model_, placed_, bodies, r.before, bodies.velocity, dt, resolution, state_);
+    lap(Part::contacts);
+
+    const std::vector<Vec2> middle = state_.motion.position;
+    drift(bodies, dt / 2, state_.motion, bodies.velocity);
+    move_bodies(bodies, bodies.velocity, dt / 2);
+    if (r.touches.correct(bodies, r.before, bodies.velocity, std::max(settled * fall_rigid() * dt * dt, 1e-12), dt,
+                          r.displacement)) {
+        drift(bodies, 1.0, state_.motion, r.displacement);
+        move_bodies(bodies, r.displacement, 1.0);
+    }
+    state_.time += dt;
+    state_.stage_time += dt;
+    account_rigid(start, middle, dt);
+    scatter(bodies, state_.motion);
+    drive(model_, state_.stage_time, state_.motion);
+    if (unfinished) r.bodies.reset();
+    lap(Part::account);
+    check_speed();
+    state_.step_halvings = step_halvings(state_.stage_step, state_.step_halvings, speed_, wider * stable_.thinnest);
+    if (state_.total_steps % energy_interval == 0) {
+        const Energies e = energies();
+        check_energy(e, e.total() - state_.ledger.total0, energy_explosion);
+    }
+}
+
+/// m/s, to which relative velocities are found.
+double Simulation::rigid_resolution(double dt) const {
+    return tolerance * std::max(fall_rigid() * dt, 1e-6 * rigid_->fastest);
+}
+
+/// m/s2, largest acceleration by weight and loads.
+double Simulation::fall_rigid() const {
+    double fall = 0.0;
+    for (BlockId b = 0; b < model_.blocks.size(); ++b) {
+        const Vec2 a = rigid_->external[b].force.cwiseProduct(model_.blocks.inv_mass[b]);
+        fall = std::max(fall, std::abs(a.x()) + std::abs(a.y()));
+    }
+    return fall;
+}
+
+/// To the middle of the step, and the velocities after it.
+void Simulation::half_step_rigid(double dt) {
+    rigid::Scratch& r = *rigid_;
+    Bodies& bodies = *r.bodies;
+    gather(model_, state_.motion, bodies);
+    r.before = bodies.velocity;
+    drift(bodies, dt / 2, state_.motion, r.before);
+    move_bodies(bodies, r.before, dt / 2);
+    state_.stage_time += dt / 2;
+    r.external.resize(model_.blocks.size());
+    external_forces(model_, state_, r.external);
+    drive(model_, state_.stage_time + dt / 2, state_.motion);
+    state_.stage_time -= dt / 2;
+
+    for (BlockId b = 0; b < model_.blocks.size(); ++b) {
+        const int q = bodies.body_of[b];
+        const rigid::Softness& soft = bodies.softness[q];
+        const Force& f = r.external[b];
+        Velocity& v = bodies.velocity[q];
+        v.x += dt * soft.x * f.force.x();
+        v.y += dt * soft.y * f.force.y();
+        v.spin += dt * soft.spin * (f.torque + cross(state_.motion.position[b] - bodies.position[q], f.force));
+    }
+    for (const DrivenBlock& d : model_.driven) {
+        Velocity& v = bodies.velocity[bodies.body_of[d.block]];
+        v = {state_.motion.velocity[d.block].x(), state_.motion.velocity[d.block].y(), state_.motion.spin[d.block]};
+    }
+    lap(Part::move);
+
+    r.fastest = rigid::Touches::fastest(model_, state_.motion, bodies);
+    const double reach = dt * r.fastest;
+    renew_pairs_rigid(reach);
+    if (r.renewed) {
+        r.touches.forget_hints();
+        r.bonds.emplace(model_, state_, bodies);
+        r.renewed = false;
+    }
+    r.touches.find(model_, placed_, state_, bodies, r.before, 0.5 * fall_rigid() * dt * dt, dt);
+    for (const rigid::Touch& c : r.touches.list()) {
+        apply(c, c.p, bodies.softness, bodies.velocity);
+        apply(c, c.earlier, bodies.softness, bodies.velocity);
+    }
+    const bool unknown = state_.stage_time == 0.0;
+    r.solver.solve(r.touches.list(), bodies.softness, bodies.velocity,
+                   {rigid_resolution(dt), unknown ? first_sweeps : sweeps});
+    r.touches.add_earlier();
+    lap(Part::sum);
+}
+
+/// True if some bond broke: the step has to be done again without it.
+bool Simulation::break_bonds_rigid(double dt) {
+    rigid::Scratch& r = *rigid_;
+    const Bodies& bodies = *r.bodies;
+    const int nb = model_.blocks.size();
+    r.contact.assign(nb, {});
+    r.touches.add_forces(model_, placed_, state_, dt, r.contact);
+    r.unbalanced.resize(nb);
+    for (BlockId b = 0; b < nb; ++b) {
+        const int q = bodies.body_of[b];
+        const Vec2 arm = state_.motion.position[b] - bodies.position[q];
+        const Velocity &v0 = r.before[q], &v1 = bodies.velocity[q];
+        const double spin = 0.5 * (v0.spin + v1.spin);
+        const Vec2 gained = model_.blocks.mass[b] / dt * (at(v1, arm) - at(v0, arm));
+        const double turned = model_.blocks.inertia[b] / dt * (v1.spin - v0.spin);
+        Force& f = r.unbalanced[b];
+        f.force = r.contact[b].force + r.external[b].force - gained + model_.blocks.mass[b] * spin * spin * arm;
+        f.torque = r.contact[b].torque + r.external[b].torque - turned;
+        state_.load[b] = {gained, turned};
+    }
+    return !r.bonds->none() && r.bonds->carry(model_, r.unbalanced, state_) > 0;
+}
+
+/// Work of weight, loads and driven blocks over the way that was really gone.
+void Simulation::account_rigid(const Motion& start, std::span<const Vec2> middle, double dt) {
+    rigid::Scratch& r = *rigid_;
+    Ledger& ledger = state_.ledger;
+    const double t = state_.stage_time - dt / 2;
+    const Vec2 g(model_.gravity_x(t), model_.gravity_y(t));
+    speed_ = 0.0;
+    double fall = 0.0;  // J, that all blocks would gain in this step by falling: what nothing at rest is judged against
+    for (BlockId b = 0; b < model_.blocks.size(); ++b) {
+        const int q = r.bodies->body_of[b];
+        const Velocity& v = r.bodies->velocity[q];
+        const Vec2 moved = state_.motion.position[b] - start.position[b];
+        const double turned = state_.motion.angle[b] - start.angle[b];
+        const Vec2 arm = middle[b] - r.bodies->position[q];
+        const double speed = at(v, arm).norm() + std::abs(v.spin) * model_.blocks.radius[b];
+        speed_ = std::isfinite(speed) ? std::max(speed_, speed) : std::numeric_limits<double>::infinity();
+        const Vec2& free = model_.blocks.inv_mass[b];
+        const Vec2 weight = model_.blocks.mass[b] * g;
+        const Vec2 load = r.external[b].force - weight;
+        fall += 0.5 * model_.blocks.mass[b] * g.squaredNorm() * dt * dt;
+        for (const int axis : {0, 1}) {
+            if (free[axis] != 0.0)
+                ledger.gravity += weight[axis] * moved[axis], ledger.loads += load[axis] * moved[axis];
+            else
+                ledger.driven -= r.contact[b].force[axis] * moved[axis];
+        }
+        if (model_.blocks.inv_inertia[b] != 0.0)
+            ledger.loads += r.external[b].torque * turned;
+        else
+            ledger.driven -= r.contact[b].torque * turned;
+    }
+    ledger.contact = -ledger.friction - ledger.contact_damping - ledger.driven;
+    ledger.largest = std::max(ledger.largest, fall);
+}
+
+}  // namespace talus

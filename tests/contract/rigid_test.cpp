@@ -1,0 +1,167 @@
+// What the rigid solver promises whatever the scene: the same bits however it is computed, mirror images, momentum.
+#include "model/hash.hpp"
+#include "output/restart.hpp"
+#include "support/catch.hpp"
+#include "support/folder.hpp"
+#include "support/scenes.hpp"
+#include "support/whole_run.hpp"
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+using namespace talus;
+using namespace talus::test;
+
+namespace {
+
+// A slope that slides on its joints, with bonded blocks that break when they land, an L of two parts, and a stage before it.
+const std::string slope = R"(
+gravity: [0, -9.81]
+materials: {rock: {density: 2500}}
+joints:
+  rough: {normal_stiffness: 1e9, shear_stiffness: 5e8, friction_angle_deg: 12, restitution: 0.2}
+  bond: {normal_stiffness: 1e9, shear_stiffness: 5e8, friction_angle_deg: 30, cohesion: 2e4, tension: 1e4, residual: {cohesion: 0}}
+contacts: {default: rough}
+rock:
+  outline: [[0, 0], [12, 0], [12, 1.5], [7, 1.5], [4, 8], [0, 8]]
+  joint_sets:
+    - {angle_deg: -35, spacing: 1.1, origin: [7, 2], joint: rough}
+    - {angle_deg: 70, spacing: 1.3, origin: [7, 2], joint: bond}
+  held: {left: true, bottom: true}
+blocks:
+  - {name: ell, outline: [[5, 8.2], [6.5, 8.2], [6.5, 8.7], [5.5, 8.7], [5.5, 9.7], [5, 9.7]], velocity: [-1, -2]}
+stages: [{name: first, gravity: [1, -9.81], until: {time: 0.1}}]
+run: {until: {time: 0.7}, solver: rigid}
+)";
+
+struct Trace {
+    std::vector<std::uint64_t> hashes;
+    int sliding = 0, broken = 0;
+};
+
+template <class Change>
+Trace trace(const Scenario& scenario, Change change) {
+    Trace found;
+    WholeRun run(scenario);
+    run.to_the_end([&](WholeRun& r) {
+        change(r);
+        for (const Contact& c : r.state().contacts.list) found.sliding += c.sliding;
+        if (r.state().total_steps % 20 == 0) found.hashes.push_back(state_hash(r.model(), r.state()));
+    });
+    for (const std::uint8_t cell : run.state().contacts.broken) found.broken += cell != 0;
+    found.hashes.push_back(state_hash(run.model(), run.state()));
+    return found;
+}
+
+Trace trace(const Scenario& scenario) {
+    return trace(scenario, [](WholeRun&) {});
+}
+
+const Trace& reference() {
+    static const Trace found = trace(scenario_of(slope));
+    return found;
+}
+
+/// Half of a portal seen from either side: a column, a beam that leans on it and slides down, a block thrown onto it.
+Scenario portal(double side) {
+    const auto flip = [&](Polygon p) {
+        if (side > 0.0) return p;
+        for (Vec2& v : p) v.x() = -v.x();
+        std::reverse(p.begin(), p.end());
+        return p;
+    };
+    auto thrown = scenes::block("thrown", flip({{-2, 6}, {-1.2, 6.1}, {-1.5, 6.9}}));
+    thrown.velocity = {3.0 * side, 0.0};
+    Scenario scene = scenes::with({scenes::held(scenes::block("ground", flip({{-9, -1}, {9, -1}, {9, 0}, {-9, 0}}))),
+                                   scenes::block("column", flip({{0, 0}, {0.8, 0}, {0.7, 3}, {0.1, 3}})),
+                                   scenes::block("beam", flip({{-0.5, 3}, {3, 3}, {3, 3.5}, {-0.5, 3.4}})), thrown});
+    scene.joints[0].friction_angle = radians(25.0);
+    scene.run.solver = "rigid";
+    scene.run.until.time = 0.8;
+    scene.run.time_step = 0.002;
+    return scene;
+}
+
+}  // namespace
+
+TEST_CASE("rigid: the slope of these tests slides and breaks") {
+    CHECK(reference().sliding > 100);
+    CHECK(reference().broken > 4);
+}
+
+TEST_CASE("rigid: one hash for every search, number of threads and skin") {
+    for (const char* search : {"auto", "dess", "direct"})
+        for (const int threads : {1, 2, 3})
+            for (const double skin : {-1.0, 0.0, 0.3}) {
+                Scenario scenario = scenario_of(slope);
+                scenario.run.search = search;
+                scenario.run.threads = threads;
+                if (skin >= 0.0) scenario.run.skin = skin;
+                CAPTURE(search, threads, skin);
+                CHECK(trace(scenario).hashes == reference().hashes);
+            }
+}
+
+TEST_CASE("rigid: scratch may be thrown away at any step") {
+    const Trace found = trace(scenario_of(slope), [](WholeRun& r) {
+        if (r.state().total_steps % 7 == 0) r.simulation().drop_scratch();
+    });
+    CHECK(found.hashes == reference().hashes);
+}
+
+TEST_CASE("rigid: a run saved and read back goes on as if it had not stopped") {
+    const Folder folder;
+    const std::string path = folder / "slope.restart.h5";
+    const Trace found = trace(scenario_of(slope), [&](WholeRun& r) {
+        if (r.state().total_steps % 23 != 0) return;
+        write_restart(path, RestartInfo{}, r.state());
+        State saved = read_restart(path, r.model());
+        r.go_on_from(std::move(saved));
+    });
+    CHECK(found.hashes == reference().hashes);
+}
+
+TEST_CASE("rigid: a mirrored scene moves as the mirror image") {
+    WholeRun run(portal(1.0)), image(portal(-1.0));
+    run.to_the_end();
+    image.to_the_end();
+    for (BlockId b = 1; b < run.model().blocks.size(); ++b) {
+        const Vec2 moved = run.state().motion.position[b] - run.state().start_position[b];
+        const Vec2 other = image.state().motion.position[b] - image.state().start_position[b];
+        CAPTURE(b, moved.x(), moved.y(), other.x(), other.y());
+        if (b > 1) CHECK(moved.norm() > 0.05);
+        CHECK((Vec2(-other.x(), other.y()) - moved).norm() < 1e-6);
+        CHECK(std::abs(run.state().motion.angle[b] + image.state().motion.angle[b]) < 1e-6);
+    }
+}
+
+TEST_CASE("rigid: free blocks that collide and rub keep their momentum, and nearly their angular momentum") {
+    Scenario scene = scenes::with({scenes::block("a", scenes::rectangle(0, 0, 1, 1)),
+                                   scenes::block("b", scenes::turned(scenes::rectangle(1.4, 0.2, 2.4, 0.9), 20.0)),
+                                   scenes::block("c", scenes::rectangle(-1.5, 0.3, -0.3, 0.8))});
+    scene.gravity = {};
+    scene.blocks[0].velocity = {0.5, 0.1};
+    scene.blocks[1].velocity = {-2.0, -0.3};
+    scene.blocks[1].spin = 2.0;
+    scene.blocks[2].velocity = {2.5, 0.0};
+    scene.run.solver = "rigid";
+    scene.run.until.time = 1.0;
+    WholeRun run(scene);
+    const auto momenta = [&] {
+        Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+        const Motion& m = run.state().motion;
+        for (BlockId b = 0; b < run.model().blocks.size(); ++b) {
+            const Vec2 p = run.model().blocks.mass[b] * m.velocity[b];
+            sum += Eigen::Vector3d(p.x(), p.y(), cross(m.position[b], p) + run.model().blocks.inertia[b] * m.spin[b]);
+        }
+        return sum;
+    };
+    const Eigen::Vector3d before = momenta();
+    run.to_the_end();
+    CHECK(run.simulation().energies().contact_damping > 0.0);
+    const Eigen::Vector3d change = momenta() - before;
+    CHECK(change.head<2>().norm() < 1e-12 * 2500.0 * 3.0);
+    // Bodies are put on each other while they move past each other: an error of the order of the step, in impacts only.
+    CHECK(std::abs(change.z()) < 0.01 * 2500.0 * 3.0);
+}

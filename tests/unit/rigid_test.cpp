@@ -1,0 +1,177 @@
+// The rigid solver piece by piece: where parts touch, impulses, what bonds carry.
+#include "dynamics/motion.hpp"
+#include "model/select.hpp"
+#include "rigid/impulses.hpp"
+#include "rigid/manifold.hpp"
+#include "support/catch.hpp"
+#include "support/hand_made.hpp"
+#include "support/scenes.hpp"
+#include "support/whole_run.hpp"
+
+#include <cmath>
+
+using namespace talus;
+using namespace talus::rigid;
+using namespace talus::test;
+
+namespace {
+
+Manifold between(const Polygon& first, const Polygon& second, double reach) {
+    const Model model = blocks_of_parts({{first}, {second}});
+    Motion motion;
+    motion.position = model.blocks.start;
+    motion.angle = {0.0, 0.0};
+    motion.velocity.assign(2, Vec2::Zero());
+    motion.spin = {0.0, 0.0};
+    Placed placed;
+    place(model, motion, 0.0, placed);
+    int hint = -1;
+    Manifold m = find_manifold(PlacedPart(model, placed, 0), PlacedPart(model, placed, 1),
+                               motion.position[1] - motion.position[0], reach, 1e-5, hint);
+    for (Vec2& p : m.point) p += motion.position[0];
+    return m;
+}
+
+/// A column of n squares of 1 kg and 1 m on the ground (body 0), after free fall over dt.
+struct Column {
+    std::vector<Softness> bodies;
+    std::vector<Velocity> velocity;
+    std::vector<Touch> touches;
+
+    Column(int n, double fall) : bodies(n + 1, {1.0, 1.0, 6.0}), velocity(n + 1, {0.0, -fall, 0.0}) {
+        bodies[0] = {};
+        velocity[0] = {};
+        for (int i = 0; i < n; ++i) {
+            Touch c{};
+            c.a = i, c.b = i + 1, c.ends = 2;
+            c.ny = 1.0, c.friction = 0.5;
+            c.arm_a[0] = c.arm_b[0] = 0.5, c.arm_a[1] = c.arm_b[1] = -0.5;
+            c.arm_a[2] = 0.5, c.arm_b[2] = -0.5;
+            prepare(c, bodies);
+            touches.push_back(c);
+        }
+    }
+};
+
+}  // namespace
+
+TEST_CASE("a block on a wider one touches it at both its lower corners") {
+    const Manifold m = between(scenes::rectangle(0, 0, 5, 1), scenes::rectangle(1, 1.001, 2, 2), 0.01);
+    REQUIRE(m.count == 2);
+    CHECK(m.normal.y() == Approx(1.0));
+    CHECK(m.point[0].x() == Approx(2.0));  // in the order of perp(normal)
+    CHECK(m.point[1].x() == Approx(1.0));
+    CHECK(m.gap[0] == Approx(0.001));
+    CHECK(m.length == Approx(1.0));
+}
+
+TEST_CASE("of a tilted block only the corner that is near counts") {
+    const Polygon tilted = scenes::shifted(scenes::turned(scenes::rectangle(0, 0, 1, 1), 10.0), {2.0, 1.0});
+    const Manifold m = between(scenes::rectangle(0, 0, 5, 1), tilted, 0.01);
+    REQUIRE(m.count == 1);
+    CHECK((m.point[0] - Vec2(2.0, 1.0)).norm() < 1e-12);
+    CHECK(std::abs(m.gap[0]) < 1e-12);
+}
+
+TEST_CASE("blocks that meet at a corner only, or are further apart than the reach, do not touch") {
+    CHECK(between(scenes::rectangle(0, 0, 1, 1), scenes::rectangle(1, 1, 2, 2), 0.01).count == 0);
+    CHECK(between(scenes::rectangle(0, 0, 1, 1), scenes::rectangle(0, 1.02, 1, 2), 0.01).count == 0);
+}
+
+TEST_CASE("impulses carry the load of a column through all its layers in about as many sweeps") {
+    for (const int n : {10, 100}) {
+        Column column(n, 0.04);
+        ImpulseSolver solver;
+        const int sweeps = solver.solve(column.touches, column.bodies, column.velocity, {1e-9, 10000});
+        CAPTURE(n, sweeps);
+        CHECK(sweeps < 20 * n);
+        for (int i = 0; i < n; ++i) {
+            CHECK(column.touches[i].p[0] + column.touches[i].p[1] == Approx(0.04 * (n - i)).epsilon(1e-4));
+            CHECK(column.touches[i].p[0] == Approx(column.touches[i].p[1]).epsilon(1e-3));
+        }
+    }
+}
+
+TEST_CASE("a block pushed sideways slips once friction is used up, and sticks before") {
+    for (const double push : {0.019, 0.03}) {
+        Column column(1, 0.04);
+        column.velocity[1].x = push;
+        ImpulseSolver solver;
+        solver.solve(column.touches, column.bodies, column.velocity, {1e-12, 1000});
+        const Touch& c = column.touches[0];
+        CHECK(c.p[0] + c.p[1] == Approx(0.04));
+        CHECK(column.velocity[1].x == Approx(std::max(push - 0.02, 0.0)).margin(1e-9));
+        CHECK(c.p[2] == Approx(std::min(push, 0.02)));  // along perp(normal), which is -x
+        CHECK((c.p[0] - c.p[1]) == Approx(c.p[2]));     // the moment of friction about the centre: 0.5 m over 0.5 m
+    }
+}
+
+TEST_CASE("bonded blocks that stand out from a wall carry what equilibrium demands, and break where it is too much") {
+    for (const double tension : {1e8, 1e5}) {
+        Scenario scene = scenes::with({scenes::held(scenes::block("wall", scenes::rectangle(-1, 0, 0, 1))),
+                                       scenes::block("first", scenes::rectangle(0, 0, 1, 1)),
+                                       scenes::block("second", scenes::rectangle(1, 0, 2, 1))});
+        scene.joints = {scenes::bonded_joint("plain", 1e8, tension)};
+        scene.run.solver = "rigid";
+        scene.run.until.time = 0.2;
+        WholeRun run(scene);
+        run.to_the_end();
+        const Contact& root = run.state().contacts.list[0];
+        // Largest tension at the wall: 6 M / L^2 with M = 5e4 N x 1 m: 3e5 Pa; at the second joint 6 x 2.5e4 x 0.5 = 7.5e4.
+        if (tension > 3e5) {
+            CHECK(root.shear_force == Approx(5e4).epsilon(1e-9));
+            CHECK(std::abs(root.normal_force) < 1e-3);
+            CHECK(std::abs(root.moment) == Approx(5e4));
+            CHECK(run.state().motion.position[2] == run.state().start_position[2]);
+        } else {
+            CHECK(run.state().motion.position[1].y() - run.state().start_position[1].y() == Approx(-0.2).epsilon(1e-6));
+            CHECK(std::abs(run.state().motion.angle[1]) < 1e-7);
+            CHECK((run.state().motion.position[2] - run.state().motion.position[1]).norm() == Approx(1.0));
+        }
+    }
+}
+
+TEST_CASE("what springs are needed for is refused to the rigid solver, all in one report") {
+    try {
+        scenario_of(R"(
+gravity: [0, -9.81]
+materials: {rock: {density: 2500}}
+joints: {rough: {normal_stiffness: 1e9, shear_stiffness: 5e8, friction_angle_deg: 30, dilation_angle_deg: 5}}
+blocks:
+  - {name: ground, rectangle: {corner: [0, 0], size: [4, 1]}, held: true}
+  - {name: block, rectangle: {corner: [1, 1], size: [1, 1]}}
+run: {until: {time: 1}, solver: rigid, damping: {contact: 1e-4}}
+record: {history: [{quantity: energy, component: strain_normal}, {quantity: stable_step}]}
+expect: [{quantity: opening, joint: [1.5, 1], below: -1e-6}]
+)");
+        FAIL("not refused");
+    } catch (const InputError& error) {
+        std::vector<std::string> keys;
+        for (const Fault& fault : error.faults()) keys.push_back(fault.key);
+        CHECK(keys == std::vector<std::string>{"joints.rough.dilation_angle_deg", "run.damping.contact",
+                                               "record.history[0].quantity", "record.history[1].quantity",
+                                               "expect[0].below"});
+    }
+}
+
+TEST_CASE("restitution is for the rigid solver only: a block rebounds with its share of the speed") {
+    const std::string text = R"(
+gravity: [0, -10]
+materials: {rock: {density: 2500}}
+joints: {base: {normal_stiffness: 1e9, shear_stiffness: 5e8, restitution: 0.5}}
+blocks:
+  - {name: ground, rectangle: {corner: [0, 0], size: [4, 1]}, held: true}
+  - {name: block, rectangle: {corner: [1, 1.2], size: [1, 1]}}
+run: {until: {time: 0.3}, SOLVER}
+)";
+    const auto with = [&](const std::string& solver) {
+        std::string full = text;
+        return scenario_of(full.replace(full.find("SOLVER"), 6, solver));
+    };
+    CHECK_THROWS_AS(with("solver: explicit"), InputError);
+    WholeRun run(with("solver: rigid, time_step: 0.001"));
+    run.to_the_end();
+    // Falls 0.2 m in 0.2 s, leaves with 1 m/s; 0.1 s later it stands still 0.05 m above the ground.
+    CHECK(std::abs(run.state().motion.velocity[1].y()) < 0.011);
+    CHECK(run.state().motion.position[1].y() == Approx(1.55).epsilon(1e-4));
+}
