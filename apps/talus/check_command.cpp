@@ -141,6 +141,11 @@ std::string duration(double seconds) {
 }
 
 void print_cost(Simulation& simulation) {
+    if (simulation.timeless()) {
+        std::printf("cost           static: no time step; about %.2g ms per iteration, mostly some hundred of them\n",
+                    1e3 * time_of_a_step(simulation));
+        return;
+    }
     const StableStep stable = simulation.stable();
     const Model& model = simulation.model();
     const double dt = simulation.state().stage_step;
@@ -166,6 +171,11 @@ void print_cost(Simulation& simulation) {
     const char* bound = has_no_end ? "at least " : may_end_before ? "at most " : "";
     std::printf("cost           %d stage%s, %s%.2g steps, about %.2g ms per step as it begins: %sabout %s in all\n", stages,
                 stages == 1 ? "" : "s", bound, length / dt, 1e3 * per_step, bound, duration(length / dt * per_step).c_str());
+}
+
+void print_memory(const Simulation& simulation) {
+    const Scenario& scenario = simulation.scenario();
+    const Model& model = simulation.model();
     const double frames = scenario.record.frame_every && simulation.recorded_time() > 0.0
                               ? simulation.recorded_time() / *scenario.record.frame_every
                               : scenario.record.frame_count.value_or(50);
@@ -181,6 +191,11 @@ void write_geometry(const std::string& path, Simulation& simulation) {
     Recorder recorder(path, simulation, std::vector<std::string>{});
     recorder.write_frame(simulation, with_all_touching_faces(simulation));
     recorder.close("checked");
+}
+
+const char* fit_for(const std::string& solver) {
+    if (solver == "rigid") return ": blocks and joints without any give; right for what falls, slides, rocks or stands";
+    return solver == "explicit" ? ": right where the stiffness of joints counts" : "";
 }
 
 }  // namespace
@@ -210,11 +225,9 @@ int check_command(const CheckArguments& arguments) {
     print_cut(simulation);
     print_joints(simulation);
     print_settlement(simulation);
-    std::printf("solver         %s\n",
-                simulation.stage().solver == "rigid"
-                    ? "rigid: blocks and joints without any give; right for what falls, slides, rocks or stands"
-                    : "explicit: right where the stiffness of joints counts");
+    std::printf("solver         %s%s\n", simulation.stage().solver.c_str(), fit_for(simulation.stage().solver));
     print_cost(simulation);
+    print_memory(simulation);
     for (const std::string& warning : simulation.report().warnings) std::printf("warning: %s\n", warning.c_str());
     return ok;
 }

@@ -48,6 +48,14 @@ void Progress::show(const Simulation& simulation) {
     const double elapsed = since_start_.seconds();
     const double rate = static_cast<double>(state.total_steps - first_step_) / std::max(elapsed, 1e-9);
     const Until& until = simulation.stage().until;
+    if (simulation.timeless()) {
+        std::fprintf(stderr, "%s%s: %lld iterations, %.0f per s, %.0f %% of the load, unbalanced %.1e%s",
+                     terminal_ ? "\r\033[K" : "", simulation.stage().name.c_str(),
+                     static_cast<long long>(state.statics.now.iterations), rate, 100.0 * state.statics.load_share,
+                     state.statics.now.ratio, terminal_ ? "" : "\n");
+        std::fflush(stderr);
+        return;
+    }
     char end[64] = "";
     if (until.time && state.stage_time > 0.0)
         std::snprintf(end, sizeof end, " of %.4g s, ETA %.0f s", *until.time,

@@ -2,6 +2,7 @@
 
 #include "core/memory.hpp"
 #include "core/text.hpp"
+#include "output/static_table.hpp"
 #include "simulation/deep_overlap.hpp"
 #include "simulation/trial.hpp"
 
@@ -102,6 +103,26 @@ void print_timing(const Simulation& simulation, double wall_time) {
                 memory.peak / 1e6);
 }
 
+void print_static_stages(const Simulation& simulation) {
+    const Statics& statics = simulation.state().statics;
+    std::size_t newton = 0;
+    for (const StaticEvidence& e : static_stages(statics)) {
+        std::printf(
+            "  static         stage %d: %s; unbalanced ratio %.2g, drift %.2g of a block per characteristic time; %lld "
+            "iterations, %lld evaluations of the forces",
+            e.stage + 1, e.reached ? "equilibrium" : "NO EQUILIBRIUM", e.ratio, e.drift,
+            static_cast<long long>(e.iterations), static_cast<long long>(e.evaluations));
+        if (e.increments > 0)
+            std::printf("; load in %lld increments, at most %.2g out of balance", static_cast<long long>(e.increments),
+                        e.loading_ratio);
+        std::printf("\n");
+        if (e.newton_steps == 0) continue;
+        std::printf("                 Newton:");
+        for (std::int64_t i = 0; i < e.newton_steps; ++i) std::printf(" %.1e", statics.newton_ratios.at(newton++));
+        std::printf("\n");
+    }
+}
+
 }  // namespace
 
 std::string number(double value, const char* unit) {
@@ -117,6 +138,11 @@ std::string block_and_place(const Model& model, BlockId b) {
 }
 
 void print_stage(const Simulation& simulation) {
+    if (simulation.timeless()) {
+        std::printf("%s: static, until the unbalanced ratio is below %s\n", simulation.stage().name.c_str(),
+                    number(*simulation.stage().until.equilibrium).c_str());
+        return;
+    }
     const StableStep& stable = simulation.stable();
     if (simulation.stage().solver != "explicit") {
         std::printf("%s: solver %s, step %s\n", simulation.stage().name.c_str(), simulation.stage().solver.c_str(),
@@ -134,6 +160,7 @@ void print_summary(const Simulation& simulation, double wall_time) {
     print_contacts(simulation);
     print_overlap(simulation);
     print_energy(simulation);
+    print_static_stages(simulation);
     std::printf("  unbalanced     %.2g of the mean contact force\n",
                 unbalanced_ratio(simulation.model(), simulation.state()));
     for (const std::string& warning : run_warnings(simulation)) std::printf("  WARNING: %s\n", warning.c_str());

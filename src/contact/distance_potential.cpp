@@ -10,10 +10,12 @@ struct Line {  // depth below edge k of P along an edge of Q: D + s t, t in [0, 
     double depth, slope;
 };
 
-// Adds -sign/2 x Int d_P ds x normal over all edges of Q inside P. Q is shifted by (qx, qy), P by (px, py), both from the
-// centroid of a; sign is +1 where Q is block b (force on b) and -1 where Q is block a (the reaction falls on b).
-void integrate(const PlacedPart& q, double qx, double qy, const PlacedPart& p, double px, double py, double sign, double dx,
-               double dy, Pressed& patch, double& weight) {
+// Visits every stretch of the edges of Q that lies inside P and is nearest to one edge of P: visit(e, k, t1, t2, f1, f2)
+// gets the edge of Q, that of P, the ends of the stretch along the edge of Q, in [0, 1], and the depths there. Q is shifted
+// by (qx, qy), P by (px, py), both from the centroid of a.
+template <class Visit>
+[[gnu::always_inline]] inline void stretches(const PlacedPart& q, double qx, double qy, const PlacedPart& p, double px,
+                                             double py, Visit&& visit) {
     constexpr int few = 16;  // parts with more edges than this are rare and may allocate
     Line some[few];
     std::vector<Line> many(p.n > few ? p.n : 0);
@@ -61,26 +63,36 @@ void integrate(const PlacedPart& q, double qx, double qy, const PlacedPart& p, d
             }
             const double f1 = std::max(lines[k].depth + lines[k].slope * t, 0.0);
             const double f2 = std::max(lines[k].depth + lines[k].slope * end, 0.0);
-            if (f1 + f2 > 0.0) {
-                const double integral = 0.5 * q.length[e] * (end - t) * (f1 + f2);
-                const double at = t + (end - t) * (f1 + 2.0 * f2) / (3.0 * (f1 + f2));
-                const double x = from.x() + qx + at * ux, y = from.y() + qy + at * uy;
-                const double fx = -0.5 * sign * integral * q.normal(e).x();
-                const double fy = -0.5 * sign * integral * q.normal(e).y();
-                patch.fx += fx;
-                patch.fy += fy;
-                patch.torque_a += x * fy - y * fx;
-                patch.torque_b += (x - dx) * fy - (y - dy) * fx;
-                patch.x += integral * x;
-                patch.y += integral * y;
-                weight += integral;
-            }
-            patch.length += 0.5 * q.length[e] * (end - t);
+            visit(e, k, t, end, f1, f2);
             t = end;
             if (following < 0) break;
             k = following;
         }
     }
+}
+
+// Adds -sign/2 x Int d_P ds x normal over all edges of Q inside P; sign is +1 where Q is block b (force on b) and -1 where Q
+// is block a (the reaction falls on b).
+void integrate(const PlacedPart& q, double qx, double qy, const PlacedPart& p, double px, double py, double sign, double dx,
+               double dy, Pressed& patch, double& weight) {
+    stretches(q, qx, qy, p, px, py, [&](int e, int, double t, double end, double f1, double f2) {
+        if (f1 + f2 > 0.0) {
+            const Vec2 &from = q.arm(e), &to = q.arm(q.next(e));
+            const double integral = 0.5 * q.length[e] * (end - t) * (f1 + f2);
+            const double at = t + (end - t) * (f1 + 2.0 * f2) / (3.0 * (f1 + f2));
+            const double x = from.x() + qx + at * (to.x() - from.x()), y = from.y() + qy + at * (to.y() - from.y());
+            const double fx = -0.5 * sign * integral * q.normal(e).x();
+            const double fy = -0.5 * sign * integral * q.normal(e).y();
+            patch.fx += fx;
+            patch.fy += fy;
+            patch.torque_a += x * fy - y * fx;
+            patch.torque_b += (x - dx) * fy - (y - dy) * fx;
+            patch.x += integral * x;
+            patch.y += integral * y;
+            weight += integral;
+        }
+        patch.length += 0.5 * q.length[e] * (end - t);
+    });
 }
 
 Polygon clip(const Polygon& polygon, double nx, double ny, double offset) {  // keeps n . x <= offset
@@ -139,6 +151,21 @@ Pressed distance_potential(const PlacedPart& a, const PlacedPart& b, double dx, 
     patch.y /= weight;
     patch.overlap = weight / (2.0 * patch.length);
     return patch;
+}
+
+void distance_potential_springs(const PlacedPart& a, const PlacedPart& b, double dx, double dy, PressedSprings& found) {
+    const auto add = [&](const PlacedPart& q, double qx, double qy, const PlacedPart& p, double px, double py, double sign) {
+        stretches(q, qx, qy, p, px, py, [&](int e, int k, double t1, double t2, double, double) {
+            const Vec2 &from = q.arm(e), &to = q.arm(q.next(e));
+            for (const double gauss : {-0.5, 0.5}) {  // two points integrate what is linear times linear
+                const double at = 0.5 * (t1 + t2) + (t2 - t1) * gauss / std::sqrt(3.0);
+                found.springs.push_back({0.25 * q.length[e] * (t2 - t1), from + at * (to - from) + Vec2(qx, qy),
+                                         -sign * q.normal(e), sign * p.normal(k)});
+            }
+        });
+    };
+    add(b, dx, dy, a, 0.0, 0.0, 1.0);
+    add(a, 0.0, 0.0, b, dx, dy, -1.0);
 }
 
 double distance_potential_energy(const PlacedPart& a, const PlacedPart& b, double dx, double dy) {

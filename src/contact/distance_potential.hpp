@@ -18,6 +18,9 @@ namespace talus {
 /// (2017).
 Pressed distance_potential(const PlacedPart& a, const PlacedPart& b, double dx, double dy);
 
+/// Its derivative. Where a loaded stretch ends at depth 0 its end adds nothing, where it ends at a corner it moves along.
+void distance_potential_springs(const PlacedPart& a, const PlacedPart& b, double dx, double dy, PressedSprings& found);
+
 /// E / kn of the same, m3. For the energy report only: exact, and slower.
 double distance_potential_energy(const PlacedPart& a, const PlacedPart& b, double dx, double dy);
 

@@ -64,6 +64,27 @@ FaceContact face_contact(const PlacedPart& a, const PlacedPart& b, double dx, do
     return contact;
 }
 
+void face_springs(const PlacedPart& a, const PlacedPart& b, double dx, double dy, int ea, int eb, const FaceMemory* memory,
+                  PressedSprings& found) {
+    const Window w = face_window(face_lines(a, b, dx, dy, ea, eb));
+    if (!w.valid) return;
+    const Vec2 n(w.nx, w.ny), t(w.tx, w.ty);
+    const auto place = [&](double s) {
+        return Vec2(s * t + (w.mid_lo + (w.mid_hi - w.mid_lo) * ((s - w.lo) / (w.hi - w.lo))) * n);
+    };
+    walk(w, closure_of(w, initial_of(memory)), memory, [&](double s0, double s1, double d0, double d1, int cell) {
+        if (cell < 0 || memory->broken[cell]) {
+            if (d0 <= 0.0 && d1 <= 0.0) return;
+            const double per_closure = (s1 - s0) / std::max(std::abs(d1 - d0), 1e-300);
+            const double zero = s0 + per_closure * std::abs(d0);
+            if (d0 < 0.0) s0 = zero, found.ends.push_back({place(zero), per_closure});
+            if (d1 < 0.0) s1 = zero, found.ends.push_back({place(zero), per_closure});
+        }
+        for (const double gauss : {-0.5, 0.5})  // two points integrate what is linear times linear
+            found.springs.push_back({0.5 * (s1 - s0), place(0.5 * (s0 + s1) + (s1 - s0) * gauss / std::sqrt(3.0)), n, n});
+    });
+}
+
 double face_energy(const PlacedPart& a, const PlacedPart& b, double dx, double dy, int ea, int eb,
                    const FaceMemory* memory) {
     const Window w = face_window(face_lines(a, b, dx, dy, ea, eb));

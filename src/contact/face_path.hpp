@@ -58,6 +58,10 @@ inline FaceLines face_lines(const PlacedPart& a, const PlacedPart& b, double dx,
 FaceContact face_contact(const PlacedPart& a, const PlacedPart& b, double dx, double dy, int ea, int eb,
                          const FaceMemory* memory);
 
+/// Its derivative, but for terms of the order overlap / length: the thrust, and corners that slide along.
+void face_springs(const PlacedPart& a, const PlacedPart& b, double dx, double dy, int ea, int eb, const FaceMemory* memory,
+                  PressedSprings& found);
+
 /// E / kn of a loaded face, m3.
 double face_energy(const PlacedPart& a, const PlacedPart& b, double dx, double dy, int ea, int eb, const FaceMemory* memory);
 

@@ -1,6 +1,10 @@
 // What two parts that overlap do to each other before friction.
 #pragma once
 
+#include "core/types.hpp"
+
+#include <vector>
+
 namespace talus {
 
 /// Normal part of a loaded contact, per unit of joint stiffness where the name says so. Positions and torques are taken from
@@ -18,6 +22,23 @@ struct Pressed {
     double rotation_stiffness = 0.0;  // m3, Int (s - centre)^2 ds over the loaded length, for the dashpot
 
     bool loaded() const { return length > 0.0; }
+};
+
+/// How the normal part answers to a small displacement of b against a: each spring adds -kn length (measure . displacement at
+/// `at`) `force` to the force on b there. Positions from the centroid of block a.
+struct PressedSpring {
+    double length;        // m
+    Vec2 at;              // m
+    Vec2 force, measure;  // units; equal for faces
+};
+/// Where the loaded length ends because the faces part: it grows by `per_closure` for each metre that they close there.
+struct OpenEnd {
+    Vec2 at;             // m
+    double per_closure;  // 1
+};
+struct PressedSprings {
+    std::vector<PressedSpring> springs;
+    std::vector<OpenEnd> ends;
 };
 
 }  // namespace talus

@@ -13,6 +13,7 @@ struct TimeTable {
     double operator()(double t) const;
     bool is_constant() const { return time.size() < 2; }
     TimeTable frozen() const { return constant((*this)(0.0)); }  // at its value at time 0
+    TimeTable at_the_end() const { return value.empty() ? *this : constant(value.back()); }
 };
 
 TimeTable operator+(const TimeTable& a, const TimeTable& b);

@@ -48,6 +48,18 @@ void add_face(Matrix3& k, const Vec2& arm, const Vec2& normal, double length, do
     }
 }
 
+// visit(k, middle) for every edge on the boundary of a block, with the middle from its centroid.
+template <class Visit>
+void for_each_edge(const Model& model, const Placed& placed, BlockId b, Visit&& visit) {
+    for (PartId p = model.blocks.first_part[b]; p < model.blocks.first_part[b + 1]; ++p) {
+        const int begin = model.parts.first_corner[p], end = model.parts.first_corner[p + 1];
+        for (int k = begin; k < end; ++k) {
+            if (model.corners.internal[k]) continue;
+            visit(k, 0.5 * (placed.corner[k].arm + placed.corner[k + 1 == end ? begin : k + 1].arm));
+        }
+    }
+}
+
 double largest_eigenvalue(const Matrix3& k, const Vector3& inverse_mass) {
     const Vector3 root = inverse_mass.cwiseSqrt();
     const Matrix3 scaled = root.asDiagonal() * k * root.asDiagonal();
@@ -125,8 +137,21 @@ double damped_limit(double omega, double beta) {
     return 2.0 / omega * (std::sqrt(1.0 + xi * xi) - xi);
 }
 
+std::vector<Matrix3> boundary_stiffness(const Model& model, const Placed& placed, const std::vector<std::uint8_t>& removed) {
+    const Stiffness most = largest_stiffness(model);
+    std::vector<Matrix3> all(model.blocks.size(), Matrix3::Zero());
+    for (BlockId b = 0; b < model.blocks.size(); ++b) {
+        if (removed[b] || model.blocks.held(b)) continue;
+        for_each_edge(model, placed, b, [&](int k, const Vec2& middle) {
+            add_face(all[b], middle, placed.corner[k].normal, model.corners.length[k], most.kn[b], most.ks[b]);
+        });
+    }
+    return all;
+}
+
 StableStep stable_step(const Model& model, const Placed& placed, const State& state) {
     const Stiffness most = largest_stiffness(model);
+    const std::vector<Matrix3> whole = boundary_stiffness(model, placed, state.removed);
     StableStep step;
     step.thinnest = std::numeric_limits<double>::infinity();
     double bound = 0.0, alone = 0.0;
@@ -136,21 +161,15 @@ StableStep stable_step(const Model& model, const Placed& placed, const State& st
             step.thinnest = std::min(step.thinnest, model.parts.thickness[p]);
         const Vector3 free = inverse_mass(model, b);
         if (free.isZero()) continue;
-        Matrix3 whole = Matrix3::Zero(), longest = Matrix3::Zero();
+        Matrix3 longest = Matrix3::Zero();
         double length = 0.0;
-        for (PartId p = model.blocks.first_part[b]; p < model.blocks.first_part[b + 1]; ++p) {
-            const int begin = model.parts.first_corner[p], end = model.parts.first_corner[p + 1];
-            for (int k = begin; k < end; ++k) {
-                if (model.corners.internal[k]) continue;
-                const Vec2 middle = 0.5 * (placed.corner[k].arm + placed.corner[k + 1 == end ? begin : k + 1].arm);
-                add_face(whole, middle, placed.corner[k].normal, model.corners.length[k], most.kn[b], most.ks[b]);
-                if (model.corners.length[k] <= length) continue;
-                length = model.corners.length[k];
-                longest.setZero();
-                add_face(longest, middle, placed.corner[k].normal, length, most.kn[b], most.ks[b]);
-            }
-        }
-        const double here = 2.0 * largest_eigenvalue(whole, free);
+        for_each_edge(model, placed, b, [&](int k, const Vec2& middle) {
+            if (model.corners.length[k] <= length) return;
+            length = model.corners.length[k];
+            longest.setZero();
+            add_face(longest, middle, placed.corner[k].normal, length, most.kn[b], most.ks[b]);
+        });
+        const double here = 2.0 * largest_eigenvalue(whole[b], free);
         if (here > bound) bound = here, step.block = b;
         alone = std::max(alone, largest_eigenvalue(longest, free));
     }

@@ -5,6 +5,9 @@
 #include "model/placed.hpp"
 #include "model/state.hpp"
 
+#include <cstdint>
+#include <vector>
+
 namespace talus {
 
 struct StableStep {
@@ -20,6 +23,11 @@ struct StableStep {
 /// Estimate: largest Rayleigh quotient found by power iteration on the contacts that carry force, and of each free block
 /// alone on its longest face. Both are shortened for contact damping: 2/omega (sqrt(1 + xi^2) - xi), xi = beta omega / 2.
 StableStep stable_step(const Model& model, const Placed& placed, const State& state);
+
+/// [nb] K_ii of that bound, about the centroid, with x, y and the angle as the corners are placed now: the stiffness of a
+/// block whose whole boundary is pressed against neighbours at rest. Zero for blocks that are held or removed.
+std::vector<Eigen::Matrix3d> boundary_stiffness(const Model& model, const Placed& placed,
+                                                const std::vector<std::uint8_t>& removed);
 
 /// 2/omega for contact damping beta (s).
 double damped_limit(double omega, double beta);

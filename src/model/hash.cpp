@@ -43,6 +43,9 @@ std::uint64_t state_hash(const Model& model, const State& state) {
     }
     for (const Contact& contact : state.contacts.list)
         if (contact.alive) add(hash, contact);
+    const Statics& statics = state.statics;
+    hash << statics.load_share << statics.damping << statics.shift << statics.now.ratio;
+    hash << static_cast<std::uint64_t>(statics.now.iterations);
     for (const std::uint8_t cell : state.contacts.broken) hash << static_cast<int>(cell);
     return hash.value();
 }

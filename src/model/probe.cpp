@@ -196,6 +196,8 @@ Reading of_scene(const ProbeSpec& spec) {
     if (spec.quantity == "area") return [](const Model& m, const State& s, const Gauges&) { return total_area(m, s); };
     if (spec.quantity == "energy_gain") return [](const Model&, const State&, const Gauges& g) { return g.energy_gain; };
     if (spec.quantity == "time_step") return [](const Model&, const State&, const Gauges& g) { return g.time_step; };
+    if (spec.quantity == "equilibrium")
+        return [](const Model&, const State& s, const Gauges&) { return static_cast<double>(s.statics.now.reached); };
     if (spec.quantity == "stable_step") return [](const Model&, const State&, const Gauges& g) { return g.stable_step; };
     return [](const Model& m, const State& s, const Gauges&) { return unbalanced_ratio(m, s); };
 }

@@ -72,6 +72,44 @@ struct Ledger {
     double largest = 0.0;   // largest energy against which that is judged
 };
 
+/// How a static stage has gone so far, or how it ended.
+struct StaticEvidence {
+    int stage = 0;
+    std::uint8_t reached = 0;       // 1 = equilibrium
+    BlockId moving = -1;            // that keeps moving: there is no equilibrium; -1 = none was found
+    double ratio = 0.0;             // unbalanced, of all of the load
+    double drift = 0.0;             // largest speed x characteristic time / size of the block
+    double loading_ratio = 0.0;     // largest unbalanced ratio while the load came on
+    std::int64_t iterations = 0;    // of both kinds
+    std::int64_t evaluations = 0;   // of all forces
+    std::int64_t increments = 0;    // in which the load came on
+    std::int64_t newton_steps = 0;  // that helped
+};
+
+/// A static stage on its way, see statics/static_solver.hpp; velocities are displacements per iteration there.
+struct Statics {
+    std::vector<Force> held_back;   // [nb] out of balance when the stage began
+    double load_share = 1.0;        // of it that acts
+    double load_rate = 0.0;         // per iteration
+    std::vector<Vec2> position;     // [nb] m, at the start of the window from which damping is taken
+    std::vector<double> angle;      // [nb] rad
+    std::vector<Force> load;        // [nb]
+    int window = 0;                 // iterations since
+    double damping = 0.0;           // of the relaxation, per iteration
+    double shift = 0.0;             // of the matrix of Newton's method, in scaled masses
+    std::int64_t polish_at = 0;     // iteration at which Newton's method is tried next
+    std::int64_t patience = 0;      // iterations to wait when it fails next
+    std::vector<Vec2> start;        // [nb] m, position at the start of the stage
+    std::int64_t look_at = 0;       // iteration of the next look whether something keeps moving
+    double look_share = 0.0;        // of the load, what the last one saw
+    double look_ratio = 0.0;
+    double look_distance = 0.0;     // m
+    int suspicious = 0;             // looks in a row that saw no progress
+    StaticEvidence now;
+    std::vector<StaticEvidence> earlier;  // static stages that are over
+    std::vector<double> newton_ratios;    // unbalanced after each step of Newton that helped, of all static stages
+};
+
 struct State {
     double time = 0.0;        // s, since the last reset
     double stage_time = 0.0;  // s, since the stage began
@@ -91,6 +129,7 @@ struct State {
     std::vector<double> start_angle;    // [nb] rad
     Ledger ledger;
     double earlier_gain = 0.0;  // energy_gain before the last reset
+    Statics statics;
 };
 
 }  // namespace talus

@@ -4,6 +4,7 @@
 #include "core/version.hpp"
 #include "output/h5_file.hpp"
 #include "output/results_layout.hpp"
+#include "output/static_table.hpp"
 
 #include <algorithm>
 #include <cstdio>
@@ -16,8 +17,11 @@ namespace {
 /// Breaks the build when a member is added that `transfer` does not know.
 [[maybe_unused]] void every_member_is_transferred(const State& state, const Contact& contact) {
     [[maybe_unused]] const auto& [time, stage_time, calm, step, total_steps, stage, stage_step, halvings, motion, load,
-                                  damping, contacts, removed, release, start_position, start_angle, ledger, earlier_gain] =
-        state;
+                                  damping, contacts, removed, release, start_position, start_angle, ledger, earlier_gain,
+                                  statics] = state;
+    [[maybe_unused]] const auto& [held_back, load_share, load_rate, window_position, window_angle, window_load, window,
+                                  relaxation_damping, shift, polish_at, patience, start, look_at, look_share, look_ratio,
+                                  look_distance, suspicious, now, earlier, newton_ratios] = state.statics;
     [[maybe_unused]] const auto& [position, angle, velocity, spin] = motion;
     [[maybe_unused]] const auto& [list, reaction, broken] = contacts;
     [[maybe_unused]] const auto& [total0, kinetic0, gravity, loads, work, local_damping, driven, friction, contact_damping,
@@ -159,6 +163,45 @@ void transfer_contacts(Archive& to, List& list) {
     to.column("contacts/normal", "1", list, &Contact::normal);
 }
 
+template <class Archive, class List>
+void transfer_evidence(Archive& to, List& stages) {
+    for_each_evidence([&](const char* name, auto member) {
+        to.column(("statics/stages/" + std::string(name)).c_str(), "1", stages, member);
+    });
+}
+
+template <class Archive, class AnyStatics>
+void transfer_statics(Archive& to, AnyStatics& s) {
+    to.list("statics/held_back", "N, N m", s.held_back);
+    to.one("statics/load_share", "1", s.load_share);
+    to.one("statics/load_rate", "1", s.load_rate);
+    to.list("statics/position", "m", s.position);
+    to.list("statics/angle", "rad", s.angle);
+    to.list("statics/load", "N, N m", s.load);
+    to.one("statics/window", "1", s.window);
+    to.one("statics/damping", "1", s.damping);
+    to.one("statics/shift", "1", s.shift);
+    to.one("statics/polish_at", "1", s.polish_at);
+    to.one("statics/patience", "1", s.patience);
+    to.list("statics/start", "m", s.start);
+    to.one("statics/look_at", "1", s.look_at);
+    to.one("statics/look_share", "1", s.look_share);
+    to.one("statics/look_ratio", "1", s.look_ratio);
+    to.one("statics/look_distance", "m", s.look_distance);
+    to.one("statics/suspicious", "1", s.suspicious);
+    to.list("statics/newton_ratios", "1", s.newton_ratios);
+    // The stage that runs now stands behind those that are over.
+    std::vector<StaticEvidence> stages = s.earlier;
+    stages.push_back(s.now);
+    if constexpr (!std::is_const_v<AnyStatics>) stages.clear();
+    transfer_evidence(to, stages);
+    if constexpr (!std::is_const_v<AnyStatics>) {
+        s.now = stages.back();
+        stages.pop_back();
+        s.earlier = std::move(stages);
+    }
+}
+
 template <class Archive, class AnyState>
 void transfer(Archive& to, AnyState& state) {
     to.one("time", "s", state.time);
@@ -195,6 +238,7 @@ void transfer(Archive& to, AnyState& state) {
     to.one("ledger/gained", "J", state.ledger.gained);
     to.one("ledger/largest", "J", state.ledger.largest);
     to.one("earlier_gain", "1", state.earlier_gain);
+    transfer_statics(to, state.statics);
 }
 
 State with_contacts_alive(const State& state) {

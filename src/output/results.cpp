@@ -6,6 +6,7 @@
 #include "output/energy_table.hpp"
 #include "output/output_path.hpp"
 #include "output/results_layout.hpp"
+#include "output/static_table.hpp"
 #include "output/vtk_view.hpp"
 
 #include <algorithm>
@@ -167,7 +168,25 @@ void ResultsWriter::finish(const RunSummary& summary) {
     file_.set("/talus", "steps", summary.steps);
     file_.set("/talus", "end_time", summary.end_time);
     file_.set("/talus", "energy_gain", summary.energy_gain);
+    write_evidence(summary.statics);
     file_.flush();
+}
+
+void ResultsWriter::write_evidence(const Statics& statics) {
+    const std::vector<StaticEvidence> stages = static_stages(statics);
+    if (stages.empty()) return;
+    const auto put = [&]<class T>(const char* name, const std::vector<T>& column, const char* shape) {
+        const std::string path = statics_group + name;
+        if (!file_.exists(path)) file_.make_rows<T>(path, {}, {"1", shape});
+        file_.truncate(path, 0);  // of an earlier end, before the run was resumed
+        file_.append<T>(path, column);
+    };
+    for_each_evidence([&](const char* name, auto member) {
+        std::vector<std::decay_t<decltype(stages[0].*member)>> column;
+        for (const StaticEvidence& stage : stages) column.push_back(stage.*member);
+        put(name, column, "static stages");
+    });
+    put("newton_ratios", statics.newton_ratios, "steps of Newton's method in all static stages");
 }
 
 }  // namespace talus

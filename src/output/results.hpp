@@ -41,6 +41,7 @@ struct RunSummary {
     std::int64_t steps = 0;
     double end_time = 0.0;     // s
     double energy_gain = 0.0;  // 1
+    Statics statics;           // evidence of the static stages
 };
 
 struct HistoryColumn {
@@ -84,6 +85,7 @@ private:
     explicit ResultsWriter(h5::File file) : file_(std::move(file)) {}
     void append_histories();
     void append_contacts(const Model& model, const State& state);
+    void write_evidence(const Statics& statics);
 
     h5::File file_;
     std::int64_t frames_ = 0, contact_rows_ = 0;

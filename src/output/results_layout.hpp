@@ -12,7 +12,8 @@ namespace talus {
 struct RunInfo;
 
 inline const std::string frames_group = "/talus/frames/", energies_group = "/talus/energies/",
-                         contacts_group = "/talus/contacts/", histories_group = "/talus/histories/";
+                         contacts_group = "/talus/contacts/", histories_group = "/talus/histories/",
+                         statics_group = "/talus/statics/";
 
 /// As long as the longest status that may follow, so that it is overwritten in its place.
 inline const std::string status_while_running = "in progress";

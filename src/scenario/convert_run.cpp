@@ -7,7 +7,16 @@
 namespace talus {
 namespace {
 
-Until convert_until(const Cursor& at) { return {at["time"].maybe_number(), at["equilibrium"].maybe_number()}; }
+// `at`: of the stage, or run.
+Until convert_until(const Cursor& at, const std::string& solver) {
+    const Cursor until = at["until"];
+    Until found{until["time"].maybe_number(), until["equilibrium"].maybe_number(), {}};
+    if (const auto iterations = until["iterations"].maybe_number()) found.iterations = static_cast<int>(*iterations);
+    if (solver == "static" && found.time && !found.equilibrium)
+        until.fault("needs `equilibrium`: no time passes in a static stage, it ends in equilibrium");
+    if (solver != "static" && found.iterations) until["iterations"].fault("is for a static stage; others end by `time`");
+    return found;
+}
 
 DampingSpec convert_damping(const Cursor& at) { return {at["local"].number(), at["contact"].number()}; }
 
@@ -52,7 +61,7 @@ StageSpec convert_stage(const Cursor& at, const std::string& solver_of_run, Valu
     stage.loads = convert_loads(at["loads"]);
     stage.loads_given = at["loads"].given();
     if (!at["until"].given()) at["until"].fault("is missing: when the stage ends");
-    stage.until = convert_until(at["until"]);
+    stage.until = convert_until(at, stage.solver);
     stage.damping = convert_damping(at["damping"]);
     stage.time_step = at["time_step"].maybe_number();
     stage.time_step_where = at["time_step"].where();
@@ -77,8 +86,8 @@ std::vector<StageSpec> convert_stages(const Cursor& scenario) {
 
 RunSpec convert_run(const Cursor& at) {
     RunSpec run;
-    run.until = convert_until(at["until"]);
     run.solver = at["solver"].text();
+    run.until = convert_until(at, run.solver);
     run.time_step = at["time_step"].maybe_number();
     run.time_step_where = at["time_step"].where();
     run.step_fraction = at["step_fraction"].number();

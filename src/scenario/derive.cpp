@@ -61,7 +61,8 @@ void fill_settling(Value& stage) {
     Value yes = Value::of_text("true");
     yes.quoted = false;
     fill(&stage, "reset", yes);
-    fill(table_at(stage, "damping"), "local", Value::of_number(0.8));
+    const Value* solver = stage.find("solver");
+    if (!solver || solver->text != "static") fill(table_at(stage, "damping"), "local", Value::of_number(0.8));
     fill(table_at(stage, "until"), "equilibrium", Value::of_number(1e-6));
 }
 

@@ -84,6 +84,7 @@ const std::vector<Quantity>& quantities() {
         {"unbalanced", "1", scene, {}, "", true, "largest out-of-balance force over the mean contact force of a block"},
         {"time_step", "s", scene, {}, "", true, "the step in use"},
         {"stable_step", "s", scene, {}, "", true, "estimate of the largest stable step"},
+        {"equilibrium", "1", scene, {}, "", true, "1 = the last static stage came to equilibrium; 0 = it did not"},
         {"stable", "", any, {}, "", false, "the displacement never exceeds `limit`; without a place: of every free block"},
         {"unstable", "", any, {}, "", false, "the displacement exceeds `limit`; without a place: of some free block"},
         {"fault",

@@ -180,6 +180,7 @@ struct DampingSpec {
 struct Until {
     std::optional<double> time;         // s, length of the stage
     std::optional<double> equilibrium;  // unbalanced ratio at which the stage ends
+    std::optional<int> iterations;      // of a static stage at most
 };
 
 struct RunSpec {

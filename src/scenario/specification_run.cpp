@@ -10,7 +10,9 @@ namespace {
 Shape until() {
     return table("until", "When a stage ends: at the time or in equilibrium, whichever comes first.",
                  {{"time", number("s", positive), optional, "length of the stage"},
-                  {"equilibrium", number("1", positive), optional, "ends when the unbalanced ratio stays below this"}},
+                  {"equilibrium", number("1", positive), optional, "ends when the unbalanced ratio stays below this"},
+                  {"iterations", integer({1, 1000000000}), optional,
+                   "of a static stage at most, 100000 if not given; a `time` ends none"}},
                  {{Rule::Count::at_least_one, {"time", "equilibrium"}}});
 }
 
@@ -24,7 +26,7 @@ Shape damping() {
 
 Shape time_step() { return either({choice({"auto"}), number("s", positive)}); }
 
-Shape solver() { return choice({"auto", "explicit", "rigid"}, {"static"}); }
+Shape solver() { return choice({"auto", "explicit", "rigid", "static"}); }
 
 Shape change() {
     return table("change", "New values that hold from the start of the stage to the end of the run.",
@@ -75,9 +77,10 @@ Shape stage() {
     return table(
         "stage", "What happens before `run`. Changed joints and deleted blocks stay; all else holds in this stage only.",
         {{"name", text(), derived("stage1, stage2, ..."), "name in reports"},
-         {"solver", solver(), derived("that of `run`"), "how motion is integrated in this stage"},
+         {"solver", solver(), derived("that of `run`"), "how motion is integrated in this stage, or equilibrium is found"},
          {"settle", boolean(), fallback("false"),
-          "fills in `damping.local` 0.8, `until.equilibrium` 1e-6 and `reset` true, unless they are given"},
+          "fills in `until.equilibrium` 1e-6, `reset` true and, with a solver for motion, `damping.local` 0.8, unless they "
+          "are given"},
          {"reset", boolean(), fallback("false"), "afterwards clock, velocities and displacements are zero"},
          {"delete", list_of(selector()), fallback("[]"), "blocks taken out at the start of the stage"},
          {"release", number("s", not_negative), fallback("0"), "time over which the forces of deleted blocks fade away"},
@@ -95,7 +98,7 @@ Shape run() {
         "run", "The last stage, and how to compute. `search`, `skin` and `threads` never change a result.",
         {{"until", until(), optional,
           "when the run ends; must be given unless there are stages, of which the last is then the end"},
-         {"solver", solver(), fallback("auto"), "how motion is integrated"},
+         {"solver", solver(), fallback("auto"), "how motion is integrated, or equilibrium is found"},
          {"time_step", time_step(), fallback("auto"), "automatic: a share of the rigorous bound"},
          {"step_fraction", number("1", positive), fallback("0.8"), "share of the rigorous bound in an automatic step"},
          {"unchecked", boolean(), fallback("false"),

@@ -135,6 +135,10 @@ void Recorder::begin_stage(const Simulation& simulation) {
 }
 
 void Recorder::after_step(const Simulation& simulation) {
+    if (simulation.timeless()) {  // places on the way to equilibrium are no results, but a kill should not cost them
+        if (!restart_written_ || since_restart_.seconds() > restart_interval) save_restart(simulation);
+        return;
+    }
     if (!simulation.recorded()) return;
     const double time = simulation.state().time;
     for (History& history : histories_)
@@ -144,7 +148,10 @@ void Recorder::after_step(const Simulation& simulation) {
 }
 
 void Recorder::end_stage(const Simulation& simulation) {
-    if (simulation.recorded() && last_frame_time_ < simulation.state().time) frame_and_restart(simulation);
+    if (simulation.recorded() && simulation.timeless())
+        for (History& history : histories_) sample(simulation, history);
+    if (simulation.recorded() && (simulation.timeless() || last_frame_time_ < simulation.state().time))
+        frame_and_restart(simulation);
     if (simulation.state().stage + 1 < simulation.stage_count()) save_restart(simulation);  // the next one may be refused
 }
 
@@ -162,11 +169,11 @@ void Recorder::save_restart(const Simulation& simulation) {
 void Recorder::finish(const Simulation& simulation, const std::string& status, double wall_time) {
     const double cpu_time = cpu_.seconds() - cpu_of_recording_;
     if (status != "diverged" && status != "refused") save_restart(simulation);
-    writer_.finish(
-        {status, wall_time, cpu_time, simulation.state().total_steps, simulation.state().time, simulation.energy_gain()});
+    writer_.finish({status, wall_time, cpu_time, simulation.state().total_steps, simulation.state().time,
+                    simulation.energy_gain(), simulation.state().statics});
 }
 
-void Recorder::close(const std::string& status) { writer_.finish({status, 0.0, 0.0, 0, 0.0, 0.0}); }
+void Recorder::close(const std::string& status) { writer_.finish({status, 0.0, 0.0, 0, 0.0, 0.0, {}}); }
 
 std::string Recorder::restart_file() const { return restart_path(path()); }
 
@@ -211,9 +218,10 @@ Outcome run(Simulation& simulation, const RunOptions& options) {
             if (options.interrupted && options.interrupted()) return Outcome::interrupted;
             simulation.step();
             if (options.recorder) options.recorder->after_step(simulation);
-            watch();
+            if (!simulation.timeless()) watch();
             if (options.progress) options.progress(simulation);
         }
+        if (simulation.timeless()) watch();
         if (options.recorder) options.recorder->end_stage(simulation);
         if (simulation.stage().until.equilibrium && !simulation.reached_equilibrium()) {
             settled = false;

@@ -45,6 +45,14 @@ double default_skin(const Model& model) {
 
 VectorTable frozen(const VectorTable& table) { return {table.x.frozen(), table.y.frozen()}; }
 
+// In a static stage tables have their last value, what fades has faded, and nothing depends on velocities.
+void stop_time(Model& model) {
+    model.gravity_x = model.gravity_x.at_the_end();
+    model.gravity_y = model.gravity_y.at_the_end();
+    for (Load& l : model.loads) l = {l.block, l.arm, l.force_x.at_the_end(), l.force_y.at_the_end(), l.moment.at_the_end()};
+    model.local_damping = model.contact_damping = model.release_time = 0.0;
+}
+
 void change_joints(const StageSpec& stage, Model& model) {
     for (const JointSpec& joint : stage.joints)
         for (Joint& mine : model.joints)
@@ -101,6 +109,7 @@ const Simulation::Method& Simulation::method() const {
     static constexpr std::array methods{
         Method{"explicit", &Simulation::update_forces, &Simulation::begin_explicit, &Simulation::step_explicit, true},
         Method{"rigid", &Simulation::forces_rigid, &Simulation::begin_rigid, &Simulation::step_rigid, false},
+        Method{"static", &Simulation::update_forces, &Simulation::begin_static, &Simulation::step_static, true},
     };
     return *std::ranges::find(methods, stage().solver, [](const Method& m) { return std::string_view(m.name); });
 }
@@ -145,13 +154,14 @@ void Simulation::check_energy(const Energies& e, double gained, double most) {
 
 double Simulation::recorded_time() const {
     double length = 0.0;
-    for (int i = first_recorded_; i < stage_count(); ++i) length += stages_[i].until.time.value_or(0.0);
+    for (int i = first_recorded_; i < stage_count(); ++i)
+        if (stages_[i].solver != "static") length += stages_[i].until.time.value_or(0.0);
     return length;
 }
 
 double Simulation::time_step() const {
     const double dt = std::ldexp(state_.stage_step, -state_.step_halvings);
-    if (!stage().until.time) return dt;
+    if (!stage().until.time || timeless()) return dt;
     const double left = *stage().until.time - state_.stage_time;
     return left < dt * (1.0 + 1e-9) ? left : dt;
 }
@@ -171,6 +181,7 @@ void Simulation::drop_scratch() {
     placed_ = {};
     search_ = make_search(scenario_.run.search);
     pairs_.clear();
+    statics_.reset();
     rigid_.reset();
 }
 
@@ -194,6 +205,7 @@ void Simulation::apply_stage() {
             load = {load.block, load.arm, load.force_x.frozen(), load.force_y.frozen(), load.moment.frozen()};
         model_.loads.push_back(load);
     }
+    if (timeless()) stop_time(model_);
     for (BlockId b = 0; b < model_.blocks.size(); ++b) {
         if (!state_.removed[b]) continue;
         model_.blocks.inv_mass[b].setZero();
@@ -229,6 +241,7 @@ void Simulation::delete_blocks() {
 // Of stages to come as much as can be known before the first step: with the blocks, joints and damping that they will have,
 // but with the contacts of now. Each is looked at again, with its own contacts, when it begins.
 void Simulation::check_stages() const {
+    if (state_.total_steps == 0 && stages_.back().solver == "static") check_timeless();
     const int end = state_.total_steps == 0 ? stage_count() : state_.stage + 1;
     if (state_.total_steps > 0 && !stage().time_step) return;
     Model model = model_;
@@ -306,6 +319,10 @@ bool Simulation::end_stage() {
 }
 
 bool Simulation::stage_over() {
+    if (timeless()) {
+        equilibrium_ = state_.statics.now.reached != 0;
+        return static_over();
+    }
     const Until& until = stage().until;
     if (until.time && state_.stage_time >= *until.time * (1.0 - 1e-12)) return true;
     if (!until.equilibrium || state_.step % calm_interval != 0 || state_.stage_time == 0.0) return false;

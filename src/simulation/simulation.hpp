@@ -8,6 +8,7 @@
 #include "model/build.hpp"
 #include "model/measure.hpp"
 #include "model/placed.hpp"
+#include "statics/static_solver.hpp"
 
 #include <array>
 #include <memory>
@@ -59,6 +60,7 @@ public:
     const StableStep& stable() const { return stable_; }
     const BuildReport& report() const { return report_; }
     double skin() const { return skin_; }
+    bool timeless() const { return stage().solver == "static"; }       // no time passes in this stage
     double time_step() const;                                          // s, of the next step (before the cut at the end)
     bool recorded() const { return state_.stage >= first_recorded_; }  // no later stage sets the clock back
     double recorded_time() const;  // s, length of the recorded stages as far as it is given
@@ -111,9 +113,16 @@ private:
     double fall_rigid() const;
     void account_rigid(const Motion& start, std::span<const Vec2> middle, double dt);
 
+    void begin_static();
+    void forces_static();
+    void step_static(double dt);
+    bool static_over() const;
+    void come_to_rest();
+
     void apply_stage();  // what a stage changes in the model; idempotent
     void delete_blocks();
     void check_stages() const;
+    void check_timeless() const;
     void update_forces(double dt);
     void refresh(double skin);
     void check_speed() const;
@@ -139,6 +148,7 @@ private:
     std::vector<std::uint8_t> reboxed_;  // [nb] 1 = got new boxes at the last refresh
     std::vector<Force> load_before_, damping_before_;
     double skin_ = 0.0;
+    std::unique_ptr<StaticSolver> statics_;
     std::unique_ptr<rigid::Scratch> rigid_;  // of the rigid solver, while it is at work
 
     StableStep stable_;

@@ -73,6 +73,15 @@ class BadInput(Program):
         self.talus("run", "slope.yaml")
         self.refused("run", "slope.yaml", "--set", "run.time_step=0.1", report=r"run\.time_step: .*stable step.*unchecked")
 
+    def test_what_takes_time_in_a_stage_without_time(self):
+        for change, report in [("until: {time: 1}", r"run\.until: needs `equilibrium`: no time passes"),
+                               ("until: {equilibrium: 1e-6}", r"blocks\.block\.driven: a prescribed velocity takes time")]:
+            self.write("slope.yaml", INCLINE.replace("until: {time: 0.1}", "solver: static, " + change).replace(
+                "{name: block, outline", "{name: block, driven: {velocity_x: 0.1}, outline"))
+            self.refused("run", "slope.yaml", report=report)
+        self.write("slope.yaml", INCLINE.replace("{time: 0.1}", "{time: 0.1, iterations: 5}"))
+        self.refused("run", "slope.yaml", report=r"run\.until\.iterations: is for a static stage")
+
     def test_a_step_that_is_too_long_for_a_later_stage_is_refused_before_anything_is_written(self):
         # The block, 1.25 m2, alone on its longest face of 5^(1/2) m: limit about 7e-4 s; with joints 100 times as stiff 7e-5 s,
         # with joints a hundredth as stiff 7e-3 s.

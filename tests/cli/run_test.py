@@ -163,6 +163,20 @@ run: {until: {time: 0.01}}
         self.assertRegex(out, r"unbalanced +0 of")
         self.assertIn("stage fall did not come to equilibrium in its 0.01 s: unbalanced ratio 1, not below 0.001\n", out)
 
+    def test_1_with_the_block_that_keeps_moving_where_there_is_no_equilibrium(self):
+        # The plane dips at 26.6 degrees: the block slides below a friction angle of that, and stays above.
+        self.write("slope.yaml", INCLINE.replace("{until: {time: 0.1}}", "{solver: static, until: {equilibrium: 1e-6}}"))
+        out, _ = self.talus("run", "slope.yaml", code=1)
+        self.assertRegex(out, r"no equilibrium: block 1 'block' at .* keeps moving; unbalanced ratio")
+        out, _ = self.talus("run", "slope.yaml", "--set", "joints.base.friction_angle_deg=30")
+        self.assertRegex(out, r"static +stage 1: equilibrium; unbalanced ratio \d\.\de-\d+")
+
+    def test_1_if_the_iterations_do_not_suffice(self):
+        run = "{solver: static, until: {equilibrium: 1e-9, iterations: 7}}"
+        self.write("slope.yaml", INCLINE.replace("{until: {time: 0.1}}", run))
+        out, _ = self.talus("run", "slope.yaml", code=1)
+        self.assertIn("stage run did not come to equilibrium in 7 iterations: unbalanced ratio", out)
+
     def test_3_if_the_run_diverges_and_the_good_frames_stay(self):
         # A load that grows without bound: no step is short enough.
         self.write("slope.yaml", INCLINE + "loads: [{block: block, force: {time: [0.05, 0.051], x: [0, 0], y: [0, 1e300]}}]\n")

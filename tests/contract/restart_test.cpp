@@ -29,6 +29,13 @@ public:
         const Ledger& l = s.ledger;
         add(l.total0, l.kinetic0, l.gravity, l.loads, l.contact, l.local_damping, l.driven, l.friction, l.contact_damping,
             l.released, l.gained, l.largest, s.earlier_gain);
+        const Statics& t = s.statics;
+        for (const auto* list : {&t.held_back, &t.load}) each(*list);
+        for (const auto* list : {&t.position, &t.start}) each(*list);
+        for (const auto* list : {&t.angle, &t.newton_ratios}) each(*list);
+        add(t.load_share, t.load_rate, t.window, t.damping, t.shift, t.polish_at, t.patience, t.look_at, t.look_share,
+            t.look_ratio, t.look_distance, t.suspicious, t.now);
+        each(t.earlier);
     }
     bool operator==(const Bits&) const = default;
 
@@ -50,6 +57,10 @@ private:
     void one(const Vec2& v) { add(v.x(), v.y()); }
     void one(const Force& f) { add(f.force, f.torque); }
     void one(const Reaction& r) { add(r.force, r.torque_a, r.torque_b); }
+    void one(const StaticEvidence& e) {
+        add(e.stage, e.reached, e.moving, e.ratio, e.drift, e.loading_ratio, e.iterations, e.evaluations, e.increments,
+            e.newton_steps);
+    }
     void one(const Contact& c) {
         add(c.part_a, c.part_b, c.joint, c.face, c.edge_a, c.edge_b, c.touching, c.slipped, c.sliding, c.alive, c.length);
         add(c.overlap, c.normal_force, c.shear_force, c.strength, c.slip, c.slip_sum, c.dilation, c.moment, c.point, c.normal);

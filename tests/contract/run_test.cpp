@@ -199,3 +199,69 @@ TEST_CASE("a run saved in the middle of its stages and read back goes on as if i
     CHECK(stages.size() == 3);
     CHECK(found.hashes == reference().hashes);
 }
+
+namespace {
+
+// A rock mass that takes up its weight, then an opening is cut out: bonds break, slip makes joints weaker, and pairs change.
+const std::string opening = R"(
+title: Rock mass that takes up its weight, and an opening
+gravity: [0, -9.81]
+materials: {rock: {density: 2500}}
+joints:
+  bedding: {normal_stiffness: 1e9, shear_stiffness: 5e8, friction_angle_deg: 35}
+  cross: {normal_stiffness: 1e9, shear_stiffness: 5e8, friction_angle_deg: 40, cohesion: 2e4, tension: 5e3, residual: {friction_angle_deg: 30}}
+contacts: {default: bedding}
+rock:
+  outline: [[0, 0], [24, 0], [24, 20], [0, 20]]
+  joint_sets:
+    - {angle_deg: 8, spacing: 0.9, joint: bedding}
+    - {angle_deg: 95, spacing: {mean: 1.0, deviation: 0.2}, seed: 5, joint: cross}
+  held: {bottom: true, left: roller, right: roller}
+  slivers: {area: 0.1, width: 0.1}
+stages:
+  - {name: settle, settle: true}
+  - {name: dig, delete: [{inside: [[10, 6], [14, 6], [14, 9], [10, 9]]}], until: {equilibrium: 1e-6}}
+run: {solver: static, until: {equilibrium: 1e-6}}
+)";
+
+}  // namespace
+
+TEST_CASE("one hash for a static run with any number of threads, any skin, stopped and resumed, scratch thrown away") {
+    const Scenario scenario = scenario_of(opening);
+    std::int64_t newton = 0;
+    int broken = 0, stages = 0;
+    const Trace expected = trace(WholeRun(scenario), [&](WholeRun& r) {
+        const Statics& s = r.state().statics;
+        newton = static_cast<std::int64_t>(s.newton_ratios.size());
+        stages = static_cast<int>(s.earlier.size()) + s.now.reached;
+        const std::vector<std::uint8_t>& cells = r.state().contacts.broken;
+        broken = static_cast<int>(std::ranges::count_if(cells, [](std::uint8_t cell) { return cell != 0; }));
+    });
+    CHECK(newton > 3);
+    CHECK(broken > 10);
+    CHECK(stages == 3);
+    CHECK(expected.refreshes > 3);
+    CHECK(expected.hashes.size() > 10);
+
+    Scenario other = scenario;
+    other.run.threads = 2;
+    other.run.skin = 0.01;
+    CHECK(trace(other).hashes == expected.hashes);
+
+    const Folder folder;
+    const std::string path = folder / "static.restart.h5";
+    Random random(3);
+    int restarts = 0;
+    const Trace resumed = trace(WholeRun(scenario), [&](WholeRun& r) {
+        const auto dice = random.bits() % 120;
+        if (dice == 0) {
+            write_restart(path, RestartInfo{}, r.state());
+            r.go_on_from(read_restart(path, r.model()));
+            ++restarts;
+        } else if (dice < 3) {
+            r.simulation().drop_scratch();
+        }
+    });
+    CHECK(restarts > 3);
+    CHECK(resumed.hashes == expected.hashes);
+}

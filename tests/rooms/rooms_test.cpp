@@ -22,9 +22,11 @@ const std::map<std::string, std::set<std::string>> may_enter = {
     {"contact", {"core", "geometry", "model"}},
     {"dynamics", {"core", "geometry", "model"}},
     {"rigid", {"core", "geometry", "model", "contact"}},
+    {"statics", {"core", "geometry", "model", "contact", "dynamics"}},
     {"terms", {"core", "model"}},
     {"output", {"core", "model"}},
-    {"simulation", {"core", "geometry", "scenario", "model", "contact", "dynamics", "rigid", "terms", "output"}},
+    {"simulation",
+     {"core", "geometry", "scenario", "model", "contact", "dynamics", "rigid", "statics", "terms", "output"}},
     {"apps", {"core", "scenario", "model", "output", "simulation"}},
 };
 

@@ -127,6 +127,17 @@ inline State random_state(const Model& m, std::uint64_t seed, int contacts) {
         s.contacts.reaction.push_back({vector(), number(), number()});
     }
     for (auto& cell : s.contacts.broken) cell = static_cast<std::uint8_t>(below(3));
+    Statics& t = s.statics;
+    t.held_back = s.release, t.load = s.damping, t.position = s.start_position, t.start = s.motion.position;
+    t.angle = s.motion.angle, t.newton_ratios = s.motion.spin;
+    t.load_share = number(), t.load_rate = number(), t.damping = number(), t.shift = number();
+    t.look_share = number(), t.look_ratio = number(), t.look_distance = number();
+    t.window = below(9), t.suspicious = below(9), t.polish_at = below(99), t.patience = below(99), t.look_at = below(99);
+    const auto evidence = [&] {
+        return StaticEvidence{below(9), flag(),    below(9),  number(),  number(),
+                              number(), below(99), below(99), below(99), below(99)};
+    };
+    t.earlier = {evidence(), evidence()}, t.now = evidence();
     Ledger& l = s.ledger;
     for (double* e : {&l.total0, &l.kinetic0, &l.gravity, &l.loads, &l.contact, &l.local_damping, &l.driven, &l.friction,
                       &l.contact_damping, &l.released, &l.gained, &l.largest, &s.earlier_gain})

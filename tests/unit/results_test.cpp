@@ -88,7 +88,7 @@ TEST_CASE("provenance reads back") {
     {
         ResultsWriter writer(folder / "run.h5", model, info);
         CHECK(ResultsReader(folder / "run.h5").status() == "in progress");
-        writer.finish({"interrupted", 12.5, 11.5, 3000000000, 1.5});
+        writer.finish({"interrupted", 12.5, 11.5, 3000000000, 1.5, 0.0, {}});
     }
     const ResultsReader reader(folder / "run.h5");
     CHECK(reader.scenario_text() == info.scenario_text);
