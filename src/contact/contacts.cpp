@@ -198,26 +198,35 @@ void refresh_contacts(const Model& model, const Placed& placed, std::span<const 
     make_incidence(model, state.contacts.list, index);
 }
 
-void sum_contacts(const Model& model, const Contacts& contacts, const ContactIndex& index, std::span<Force> load) {
-    const int nb = model.blocks.size();
+void sort_contacts_again(const Model& model, const Contacts& contacts, BlockId block, ContactIndex& index) {
+    if (index.chunks.empty()) return;
+    const auto mark = [&](BlockId a) { index.chunks[a / blocks_per_chunk].sorted = false; };
+    mark(block);
+    for (int e = index.first_b[block]; e < index.first_b[block + 1]; ++e)
+        mark(model.parts.block[contacts.list[index.slot_b[e]].part_a]);
+}
+
+void sum_contacts(std::span<const BlockRange> ranges, const Contacts& contacts, const ContactIndex& index,
+                  std::span<Force> load) {
 #pragma omp parallel for schedule(static)
-    for (int b = 0; b < nb; ++b) {
-        double fx = 0.0, fy = 0.0, torque = 0.0;
-        for (int e = index.first_b[b]; e < index.first_b[b + 1]; ++e) {
-            const Reaction& r = contacts.reaction[index.slot_b[e]];
-            fx += r.force.x();
-            fy += r.force.y();
-            torque += r.torque_b;
+    for (const BlockRange& range : ranges)
+        for (int b = range.begin; b < range.end; ++b) {
+            double fx = 0.0, fy = 0.0, torque = 0.0;
+            for (int e = index.first_b[b]; e < index.first_b[b + 1]; ++e) {
+                const Reaction& r = contacts.reaction[index.slot_b[e]];
+                fx += r.force.x();
+                fy += r.force.y();
+                torque += r.torque_b;
+            }
+            for (int i = index.first_a[b]; i < index.first_a[b + 1]; ++i) {
+                const Reaction& r = contacts.reaction[i];
+                fx -= r.force.x();
+                fy -= r.force.y();
+                torque += r.torque_a;
+            }
+            load[b].force += Vec2(fx, fy);
+            load[b].torque += torque;
         }
-        for (int i = index.first_a[b]; i < index.first_a[b + 1]; ++i) {
-            const Reaction& r = contacts.reaction[i];
-            fx -= r.force.x();
-            fy -= r.force.y();
-            torque += r.torque_a;
-        }
-        load[b].force += Vec2(fx, fy);
-        load[b].torque += torque;
-    }
 }
 
 StrainEnergy strain_energy(const Model& model, const Placed& placed, const State& state) {

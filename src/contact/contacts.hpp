@@ -8,6 +8,7 @@
 // `memory_reach`, or when the faces have turned away from each other.
 #pragma once
 
+#include "model/awake.hpp"
 #include "model/model.hpp"
 #include "model/placed.hpp"
 #include "model/state.hpp"
@@ -67,12 +68,16 @@ double touch_depth(const Model& model, PartId a, PartId b);
 void refresh_contacts(const Model& model, const Placed& placed, std::span<const Pair> pairs,
                       std::span<const std::uint8_t> reboxed, double skin, State& state, ContactIndex& index);
 
-/// Geometry and law of every contact in the list, for velocities of the half step before `now` and a step dt (0: forces
-/// only). Adds what slip and dashpots dissipate to the ledger.
+/// To be called for every block that was frozen or woken since the last update.
+void sort_contacts_again(const Model& model, const Contacts& contacts, BlockId block, ContactIndex& index);
+
+/// Geometry and law of every contact in the list but those between two frozen blocks, for velocities of the half step before
+/// `now` and a step dt (0: forces only). Adds what slip and dashpots dissipate to the ledger.
 void update_contacts(const Model& model, const Placed& placed, double dt, State& state, ContactIndex& index);
 
 /// load[b] += sum over its contacts, in key order. Contacts that carry nothing hold zeros, which change no bit of a sum.
-void sum_contacts(const Model& model, const Contacts& contacts, const ContactIndex& index, std::span<Force> load);
+void sum_contacts(std::span<const BlockRange> ranges, const Contacts& contacts, const ContactIndex& index,
+                  std::span<Force> load);
 
 /// J, elastic energy stored in the joints now: normal and shear.
 struct StrainEnergy {

@@ -31,6 +31,7 @@ public:
           placed_(placed),
           dt_(dt),
           damping_(dt > 0.0 ? model.contact_damping : 0.0),
+          state_(state),
           contacts_(state.contacts),
           index_(index),
           kernel_(kernel) {
@@ -120,6 +121,7 @@ private:
         chunk.others.clear();
         for (int i = chunk.begin; i < chunk.end; ++i) {
             const Contact& c = contacts_.list[i];
+            if (both_frozen(c)) continue;
             while (next != known.end() && next->slot < i) ++next;
             if (!c.alive)
                 chunk.idle.push_back(next != known.end() && next->slot == i ? *next : Idle{.slot = i});
@@ -129,6 +131,10 @@ private:
                 chunk.others.push_back(i);
         }
         chunk.sorted = true;
+    }
+
+    bool both_frozen(const Contact& c) const {
+        return state_.frozen(model_.parts.block[c.part_a]) && state_.frozen(model_.parts.block[c.part_b]);
     }
 
     // ---- faces without intact bonds: many at a time
@@ -380,6 +386,7 @@ private:
     const Model& model_;
     const Placed& placed_;
     double dt_, damping_;
+    const State& state_;
     Contacts& contacts_;
     const ContactIndex& index_;
     FaceKernel kernel_;

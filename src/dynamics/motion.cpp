@@ -9,20 +9,17 @@
 namespace talus {
 namespace {
 
-constexpr int chunk = 256;  // blocks per partial sum; fixed, so that sums do not depend on the number of threads
-
 double sign(double v) { return v > 0.0 ? 1.0 : v < 0.0 ? -1.0 : 0.0; }
 
-struct BlockWork {  // of one chunk, J, and its largest speed, m/s
+struct BlockWork {  // of one range, J, and its largest speed, m/s
     double all = 0.0, gravity = 0.0, damping = 0.0, driven = 0.0, speed = 0.0;
 };
 
-// N2/kg: sum of F^2/m over the free axes, what the product form of the kinetic energy takes away, times dt^2/8.
-double force_squared(const Model& model, std::span<const Force> load) {
+// N2/kg: what the product form of the kinetic energy takes away, times dt^2/8. What is frozen does not swing.
+double force_squared(const Model& model, const State& state, std::span<const Force> load) {
     double sum = 0.0;
     for (int b = 0; b < model.blocks.size(); ++b)
-        sum += load[b].force.cwiseAbs2().dot(model.blocks.inv_mass[b]) +
-               load[b].torque * load[b].torque * model.blocks.inv_inertia[b];
+        if (!state.frozen(b)) sum += force_squared(model.blocks, b, load[b]);
     return sum;
 }
 
@@ -35,22 +32,22 @@ Force load_at(const Load& l, double t, double angle) {
 
 }  // namespace
 
-void kick(const Model& model, std::span<const Force> load, Motion& motion, double dt) {
-    const int nb = model.blocks.size();
+void kick(const Model& model, const Awake& awake, std::span<const Force> load, Motion& motion, double dt) {
 #pragma omp parallel for schedule(static)
-    for (int b = 0; b < nb; ++b) {
-        motion.velocity[b] += dt * load[b].force.cwiseProduct(model.blocks.inv_mass[b]);
-        motion.spin[b] += dt * load[b].torque * model.blocks.inv_inertia[b];
-    }
+    for (const BlockRange& range : awake.moving)
+        for (int b = range.begin; b < range.end; ++b) {
+            motion.velocity[b] += dt * load[b].force.cwiseProduct(model.blocks.inv_mass[b]);
+            motion.spin[b] += dt * load[b].torque * model.blocks.inv_inertia[b];
+        }
 }
 
-void drift(Motion& motion, double dt) {
-    const int nb = static_cast<int>(motion.position.size());
+void drift(const Awake& awake, Motion& motion, double dt) {
 #pragma omp parallel for schedule(static)
-    for (int b = 0; b < nb; ++b) {
-        motion.position[b] += dt * motion.velocity[b];
-        motion.angle[b] += dt * motion.spin[b];
-    }
+    for (const BlockRange& range : awake.moving)
+        for (int b = range.begin; b < range.end; ++b) {
+            motion.position[b] += dt * motion.velocity[b];
+            motion.angle[b] += dt * motion.spin[b];
+        }
 }
 
 void drive(const Model& model, double t, Motion& motion) {
@@ -61,9 +58,10 @@ void drive(const Model& model, double t, Motion& motion) {
     }
 }
 
-bool place(const Model& model, const Motion& motion, double skin, Placed& placed) {
+bool place(const Model& model, const Awake& awake, const Motion& motion, double skin, Placed& placed) {
     const int nb = model.blocks.size();
     const bool all = placed.boxed.empty();
+    const std::vector<BlockRange>& ranges = all ? all_awake(nb).moving : awake.moving;
     placed.corner.resize(model.corners.arm.size());
     placed.block.resize(nb);
     const Vec2 *arm = model.corners.arm.data(), *normal = model.corners.normal.data();
@@ -71,32 +69,33 @@ bool place(const Model& model, const Motion& motion, double skin, Placed& placed
     PlacedCorner* corner = placed.corner.data();
     const Vec2 axis = model.box_axis;
     bool left = all;
-    constexpr int few = 64;
+    constexpr int few = blocks_per_range / 4;  // their sines and cosines stay near
 #pragma omp parallel for schedule(static) reduction(|| : left)
-    for (int begin = 0; begin < nb; begin += few) {
-        const int n = std::min(few, nb - begin);
-        double c[few], s[few];
-        for (int i = 0; i < n; ++i) {
-            const Turn now = turn(motion.angle[begin + i]);
-            c[i] = now.c;
-            s[i] = now.s;
-        }
-        bool inside = true;
-        for (int i = 0; i < n; ++i) {
-            const int b = begin + i;
-            const Vec2 position = motion.position[b];
-            placed.block[b] = {position, motion.velocity[b], motion.spin[b]};
-            if (!all) inside &= placed.boxed[b].moved(position, motion.angle[b], axis) <= skin;
-            if (!all && model.blocks.inv_inertia[b] == 0.0 && motion.spin[b] == 0.0) continue;
-            const double cosine = c[i], sine = s[i];
-            for (int k = first_corner[first_part[b]]; k < first_corner[first_part[b + 1]]; ++k) {
-                const Vec2 p = arm[k], m = normal[k];
-                corner[k] = {{cosine * p.x() - sine * p.y(), sine * p.x() + cosine * p.y()},
-                             {cosine * m.x() - sine * m.y(), sine * m.x() + cosine * m.y()}};
+    for (const BlockRange& range : ranges)
+        for (int begin = range.begin; begin < range.end; begin += few) {
+            const int n = std::min(few, range.end - begin);
+            double c[few], s[few];
+            for (int i = 0; i < n; ++i) {
+                const Turn now = turn(motion.angle[begin + i]);
+                c[i] = now.c;
+                s[i] = now.s;
             }
+            bool inside = true;
+            for (int i = 0; i < n; ++i) {
+                const int b = begin + i;
+                const Vec2 position = motion.position[b];
+                placed.block[b] = {position, motion.velocity[b], motion.spin[b]};
+                if (!all) inside &= placed.boxed[b].moved(position, motion.angle[b], axis) <= skin;
+                if (!all && model.blocks.inv_inertia[b] == 0.0 && motion.spin[b] == 0.0) continue;
+                const double cosine = c[i], sine = s[i];
+                for (int k = first_corner[first_part[b]]; k < first_corner[first_part[b + 1]]; ++k) {
+                    const Vec2 p = arm[k], m = normal[k];
+                    corner[k] = {{cosine * p.x() - sine * p.y(), sine * p.x() + cosine * p.y()},
+                                 {cosine * m.x() - sine * m.y(), sine * m.x() + cosine * m.y()}};
+                }
+            }
+            left = left || !inside;
         }
-        left = left || !inside;
-    }
     return left;
 }
 
@@ -104,52 +103,56 @@ double release_share(const Model& model, double stage_time) {
     return stage_time < model.release_time ? 1.0 - stage_time / model.release_time : 0.0;
 }
 
-void external_forces(const Model& model, const State& state, std::span<Force> load) {
-    const int nb = model.blocks.size();
+void weigh(const Model& model, std::span<const BlockRange> ranges, const State& state, std::span<Force> load) {
     const Vec2 g(model.gravity_x(state.stage_time), model.gravity_y(state.stage_time));
+    const double share = state.release.empty() ? 0.0 : release_share(model, state.stage_time);
 #pragma omp parallel for schedule(static)
-    for (int b = 0; b < nb; ++b) load[b] = {model.blocks.mass[b] * g, 0.0};
+    for (const BlockRange& range : ranges)
+        for (int b = range.begin; b < range.end; ++b) {
+            load[b] = {model.blocks.mass[b] * g, 0.0};
+            if (share == 0.0) continue;
+            load[b].force += share * state.release[b].force;
+            load[b].torque += share * state.release[b].torque;
+        }
+}
+
+void add_loads(const Model& model, const State& state, std::span<Force> load) {
     for (const Load& l : model.loads) {
         const Force f = load_at(l, state.stage_time, state.motion.angle[l.block]);
         load[l.block].force += f.force;
         load[l.block].torque += f.torque;
     }
-    const double share = state.release.empty() ? 0.0 : release_share(model, state.stage_time);
-    if (share == 0.0) return;
-    for (int b = 0; b < nb; ++b) {
-        load[b].force += share * state.release[b].force;
-        load[b].torque += share * state.release[b].torque;
-    }
 }
 
-void damp_locally(const Model& model, const Motion& motion, std::span<Force> load, std::vector<Force>& damping) {
-    const int nb = model.blocks.size();
+void damp_locally(const Model& model, const Awake& awake, const Motion& motion, std::span<Force> load,
+                  std::vector<Force>& damping) {
     const double alpha = model.local_damping;
-    damping.resize(nb);
+    damping.resize(model.blocks.size());
 #pragma omp parallel for schedule(static)
-    for (int b = 0; b < nb; ++b) {
-        const Vec2& free = model.blocks.inv_mass[b];
-        const Vec2 &f = load[b].force, &v = motion.velocity[b];
-        damping[b].force = {free.x() == 0.0 ? 0.0 : -alpha * std::abs(f.x()) * sign(v.x()),
-                            free.y() == 0.0 ? 0.0 : -alpha * std::abs(f.y()) * sign(v.y())};
-        damping[b].torque =
-            model.blocks.inv_inertia[b] == 0.0 ? 0.0 : -alpha * std::abs(load[b].torque) * sign(motion.spin[b]);
-        load[b].force += damping[b].force;
-        load[b].torque += damping[b].torque;
-    }
+    for (const BlockRange& range : awake.moving)
+        for (int b = range.begin; b < range.end; ++b) {
+            const Vec2& free = model.blocks.inv_mass[b];
+            const Vec2 &f = load[b].force, &v = motion.velocity[b];
+            damping[b].force = {free.x() == 0.0 ? 0.0 : -alpha * std::abs(f.x()) * sign(v.x()),
+                                free.y() == 0.0 ? 0.0 : -alpha * std::abs(f.y()) * sign(v.y())};
+            damping[b].torque =
+                model.blocks.inv_inertia[b] == 0.0 ? 0.0 : -alpha * std::abs(load[b].torque) * sign(motion.spin[b]);
+            load[b].force += damping[b].force;
+            load[b].torque += damping[b].torque;
+        }
 }
 
-double account(const Model& model, const StepEnd& before, const StepEnd& after, const State& state, double dt,
-               Ledger& ledger) {
-    const int nb = model.blocks.size(), chunks = (nb + chunk - 1) / chunk;
-    std::vector<BlockWork> work(chunks);
+double account(const Model& model, const Awake& awake, const StepEnd& before, const StepEnd& after, const State& state,
+               double dt, Ledger& ledger) {
+    const int nb = model.blocks.size(), ranges = static_cast<int>(awake.moving.size());
+    std::vector<BlockWork> work(ranges);
     const Motion& motion = state.motion;
     const double t0 = state.stage_time - dt, t1 = state.stage_time;
     const Vec2 g = 0.5 * Vec2(model.gravity_x(t0) + model.gravity_x(t1), model.gravity_y(t0) + model.gravity_y(t1));
 #pragma omp parallel for schedule(static)
-    for (int k = 0; k < chunks; ++k) {
+    for (int k = 0; k < ranges; ++k) {
         BlockWork& w = work[k];
-        for (int b = k * chunk; b < std::min((k + 1) * chunk, nb); ++b) {
+        for (int b = awake.moving[k].begin; b < awake.moving[k].end; ++b) {
             const Vec2 &free = model.blocks.inv_mass[b], &v = motion.velocity[b];
             const double spin = motion.spin[b];
             const double speed = std::sqrt(v.squaredNorm()) + std::abs(spin) * model.blocks.radius[b];
@@ -206,7 +209,7 @@ double account(const Model& model, const StepEnd& before, const StepEnd& after, 
     // A halved step, or one cut at the end of its stage, belongs to another product form than that of the stage.
     if (dt != state.stage_step)
         ledger.kinetic0 += 0.125 * (state.stage_step * state.stage_step - dt * dt) *
-                           (force_squared(model, before.load) - force_squared(model, after.load));
+                           (force_squared(model, state, before.load) - force_squared(model, state, after.load));
     return sum.speed;
 }
 
@@ -216,6 +219,7 @@ double kinetic_energy_of_ledger(const Model& model, const State& state, double d
         if (inverse != 0.0) energy += 0.5 * v * v / inverse - 0.125 * dt * dt * f * f * inverse;
     };
     for (int b = 0; b < model.blocks.size(); ++b) {
+        if (state.frozen(b)) continue;  // does not swing
         add(model.blocks.inv_mass[b].x(), state.motion.velocity[b].x(), state.load[b].force.x());
         add(model.blocks.inv_mass[b].y(), state.motion.velocity[b].y(), state.load[b].force.y());
         add(model.blocks.inv_inertia[b], state.motion.spin[b], state.load[b].torque);

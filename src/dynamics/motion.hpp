@@ -1,6 +1,7 @@
 // Moving blocks: kick-drift-kick, the two halves of a leapfrog step (velocity Verlet). Second order, symplectic.
 #pragma once
 
+#include "model/awake.hpp"
 #include "model/model.hpp"
 #include "model/placed.hpp"
 #include "model/state.hpp"
@@ -10,26 +11,31 @@
 namespace talus {
 
 /// v += F/m x dt along the axes that are free.
-void kick(const Model& model, std::span<const Force> load, Motion& motion, double dt);
+void kick(const Model& model, const Awake& awake, std::span<const Force> load, Motion& motion, double dt);
 
 /// x += v dt, angle += spin dt.
-void drift(Motion& motion, double dt);
+void drift(const Awake& awake, Motion& motion, double dt);
 
 /// Sets the velocities that are prescribed at time t.
 void drive(const Model& model, double t, Motion& motion);
 
-/// Turns corners and normals to the present angles; blocks that never turn are placed while there are no boxes yet. Returns
-/// whether there are none, or a point of a block may have moved further along an axis than `skin` since it got its boxes.
-bool place(const Model& model, const Motion& motion, double skin, Placed& placed);
+/// Turns corners and normals to the present angles; blocks that never turn or are frozen are placed while there are no boxes
+/// yet. Returns whether there are none, or a point of a block may have moved further along an axis than `skin` since it got
+/// its boxes.
+bool place(const Model& model, const Awake& awake, const Motion& motion, double skin, Placed& placed);
 
 /// Share of the forces of deleted neighbours that is still there, 1 at the start of the stage, 0 after model.release_time.
 double release_share(const Model& model, double stage_time);
 
-/// load = weight + loads + what is left of the forces of deleted neighbours, at state.stage_time.
-void external_forces(const Model& model, const State& state, std::span<Force> load);
+/// load = weight + what is left of the forces of deleted neighbours, at state.stage_time.
+void weigh(const Model& model, std::span<const BlockRange> ranges, const State& state, std::span<Force> load);
+
+/// load += loads of the scene, at state.stage_time.
+void add_loads(const Model& model, const State& state, std::span<Force> load);
 
 /// Cundall's local damping, per degree of freedom that is free: damping = -alpha |F| sign(v), added to the load.
-void damp_locally(const Model& model, const Motion& motion, std::span<Force> load, std::vector<Force>& damping);
+void damp_locally(const Model& model, const Awake& awake, const Motion& motion, std::span<Force> load,
+                  std::vector<Force>& damping);
 
 /// Forces at one end of a step: what the ledger needs to tell the work of each kind apart.
 struct StepEnd {
@@ -39,8 +45,13 @@ struct StepEnd {
 /// Adds the work of the step dt that ends at `state` (velocities still those of the half step) to the ledger, with the mean
 /// of the forces at both its ends: exact for kick-drift-kick when the kinetic energy is taken as kinetic_energy_of_ledger
 /// does. Returns the largest speed of any corner, m/s.
-double account(const Model& model, const StepEnd& before, const StepEnd& after, const State& state, double dt,
-               Ledger& ledger);
+double account(const Model& model, const Awake& awake, const StepEnd& before, const StepEnd& after, const State& state,
+               double dt, Ledger& ledger);
+
+/// N2/kg, F M^-1 F over the axes that are free.
+inline double force_squared(const Blocks& blocks, BlockId b, const Force& load) {
+    return load.force.cwiseAbs2().dot(blocks.inv_mass[b]) + load.torque * load.torque * blocks.inv_inertia[b];
+}
 
 /// J, (m/2) v(t - dt/2) . v(t + dt/2) summed over the free blocks: changes by exactly the mid-step work.
 double kinetic_energy_of_ledger(const Model& model, const State& state, double dt);

@@ -15,15 +15,6 @@ Vec2 turned(const Vec2& v, double angle) {
     return {c * v.x() - s * v.y(), s * v.x() + c * v.y()};
 }
 
-// N: what is left over of all forces along the axes in which the block is free.
-double out_of_balance(const Blocks& blocks, BlockId b, const Force& load) {
-    const double x = blocks.inv_mass[b].x() > 0.0 ? load.force.x() : 0.0;
-    const double y = blocks.inv_mass[b].y() > 0.0 ? load.force.y() : 0.0;
-    const double gyration = std::sqrt(blocks.inertia[b] / blocks.mass[b]);
-    const double couple = blocks.inv_inertia[b] > 0.0 ? load.torque / gyration : 0.0;
-    return std::hypot(x, y, couple);
-}
-
 // N per block: sum of the magnitudes of the contact forces.
 std::vector<double> contact_forces(const Model& model, const Contacts& contacts) {
     std::vector<double> sum(model.blocks.size(), 0.0);
@@ -48,6 +39,14 @@ double kinetic_energy(const Model& model, const State& state) {
         energy += 0.5 * blocks.mass[b] * v.squaredNorm() + 0.5 * blocks.inertia[b] * spin * spin;
     }
     return energy;
+}
+
+double out_of_balance(const Blocks& blocks, BlockId b, const Force& load) {
+    const double x = blocks.inv_mass[b].x() > 0.0 ? load.force.x() : 0.0;
+    const double y = blocks.inv_mass[b].y() > 0.0 ? load.force.y() : 0.0;
+    const double gyration = std::sqrt(blocks.inertia[b] / blocks.mass[b]);
+    const double couple = blocks.inv_inertia[b] > 0.0 ? load.torque / gyration : 0.0;
+    return std::hypot(x, y, couple);
 }
 
 double unbalanced_ratio(const Model& model, const State& state) {

@@ -27,6 +27,10 @@ double kinetic_energy(const Model& model, const State& state);
 /// all. Dimensionless; 0 in equilibrium, infinite if nothing but an applied load acts.
 double unbalanced_ratio(const Model& model, const State& state);
 
+/// N, what is left over of a load along the axes in which the block is free; a torque counts divided by the radius of
+/// gyration.
+double out_of_balance(const Blocks& blocks, BlockId b, const Force& load);
+
 /// Displacement since the start (or the last reset) of the point of block b that was at `start_point` (m) then.
 Vec2 displacement(const Model& model, const State& state, BlockId b, const Vec2& start_point);
 

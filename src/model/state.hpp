@@ -88,23 +88,23 @@ struct StaticEvidence {
 
 /// A static stage on its way, see statics/static_solver.hpp; velocities are displacements per iteration there.
 struct Statics {
-    std::vector<Force> held_back;   // [nb] out of balance when the stage began
-    double load_share = 1.0;        // of it that acts
-    double load_rate = 0.0;         // per iteration
-    std::vector<Vec2> position;     // [nb] m, at the start of the window from which damping is taken
-    std::vector<double> angle;      // [nb] rad
-    std::vector<Force> load;        // [nb]
-    int window = 0;                 // iterations since
-    double damping = 0.0;           // of the relaxation, per iteration
-    double shift = 0.0;             // of the matrix of Newton's method, in scaled masses
-    std::int64_t polish_at = 0;     // iteration at which Newton's method is tried next
-    std::int64_t patience = 0;      // iterations to wait when it fails next
-    std::vector<Vec2> start;        // [nb] m, position at the start of the stage
-    std::int64_t look_at = 0;       // iteration of the next look whether something keeps moving
-    double look_share = 0.0;        // of the load, what the last one saw
+    std::vector<Force> held_back;  // [nb] out of balance when the stage began
+    double load_share = 1.0;       // of it that acts
+    double load_rate = 0.0;        // per iteration
+    std::vector<Vec2> position;    // [nb] m, at the start of the window from which damping is taken
+    std::vector<double> angle;     // [nb] rad
+    std::vector<Force> load;       // [nb]
+    int window = 0;                // iterations since
+    double damping = 0.0;          // of the relaxation, per iteration
+    double shift = 0.0;            // of the matrix of Newton's method, in scaled masses
+    std::int64_t polish_at = 0;    // iteration at which Newton's method is tried next
+    std::int64_t patience = 0;     // iterations to wait when it fails next
+    std::vector<Vec2> start;       // [nb] m, position at the start of the stage
+    std::int64_t look_at = 0;      // iteration of the next look whether something keeps moving
+    double look_share = 0.0;       // of the load, what the last one saw
     double look_ratio = 0.0;
-    double look_distance = 0.0;     // m
-    int suspicious = 0;             // looks in a row that saw no progress
+    double look_distance = 0.0;  // m
+    int suspicious = 0;          // looks in a row that saw no progress
     StaticEvidence now;
     std::vector<StaticEvidence> earlier;  // static stages that are over
     std::vector<double> newton_ratios;    // unbalanced after each step of Newton that helped, of all static stages
@@ -123,6 +123,7 @@ struct State {
     std::vector<Force> load;     // [nb] sum of all forces at `time`, also on held blocks
     std::vector<Force> damping;  // [nb] share of local damping in it; empty = none
     Contacts contacts;
+    std::vector<std::uint8_t> calm;     // [nb] looks in a row at which the block was at rest; empty = nothing is frozen
     std::vector<std::uint8_t> removed;  // [nb] deleted by a stage
     std::vector<Force> release;         // [nb] forces of deleted neighbours that fade away in this stage; empty = none
     std::vector<Vec2> start_position;   // [nb] m, position and angle from which displacements count
@@ -130,6 +131,10 @@ struct State {
     Ledger ledger;
     double earlier_gain = 0.0;  // energy_gain before the last reset
     Statics statics;
+
+    static constexpr std::uint8_t calm_needed = 2;
+    /// At rest, see dynamics/freeze.hpp.
+    bool frozen(int block) const { return !calm.empty() && calm[block] >= calm_needed; }
 };
 
 }  // namespace talus

@@ -17,8 +17,8 @@ namespace {
 /// Breaks the build when a member is added that `transfer` does not know.
 [[maybe_unused]] void every_member_is_transferred(const State& state, const Contact& contact) {
     [[maybe_unused]] const auto& [time, stage_time, calm, step, total_steps, stage, stage_step, halvings, motion, load,
-                                  damping, contacts, removed, release, start_position, start_angle, ledger, earlier_gain,
-                                  statics] = state;
+                                  damping, contacts, calm_looks, removed, release, start_position, start_angle, ledger,
+                                  earlier_gain, statics] = state;
     [[maybe_unused]] const auto& [held_back, load_share, load_rate, window_position, window_angle, window_load, window,
                                   relaxation_damping, shift, polish_at, patience, start, look_at, look_share, look_ratio,
                                   look_distance, suspicious, now, earlier, newton_ratios] = state.statics;
@@ -221,6 +221,7 @@ void transfer(Archive& to, AnyState& state) {
     transfer_contacts(to, state.contacts.list);
     to.list("contacts/reaction", "N, N m", state.contacts.reaction);
     to.list("contacts/broken", "1", state.contacts.broken);
+    to.list("calm", "1", state.calm);
     to.list("removed", "1", state.removed);
     to.list("release", "N, N m", state.release);
     to.list("start_position", "m", state.start_position);
@@ -291,7 +292,8 @@ bool fits(const State& s, const Model& model) {
     return one_per_block(s.motion.position, s.motion.angle, s.motion.velocity, s.motion.spin, s.load, s.removed,
                          s.start_position, s.start_angle) &&
            (s.release.empty() || s.release.size() == blocks) && (s.damping.empty() || s.damping.size() == blocks) &&
-           s.contacts.reaction.size() == contacts && s.contacts.broken.size() == static_cast<std::size_t>(model.cells()) &&
+           (s.calm.empty() || s.calm.size() == blocks) && s.contacts.reaction.size() == contacts &&
+           s.contacts.broken.size() == static_cast<std::size_t>(model.cells()) &&
            std::all_of(s.contacts.list.begin(), s.contacts.list.end(), known);
 }
 

@@ -93,6 +93,7 @@ RunSpec convert_run(const Cursor& at) {
     run.step_fraction = at["step_fraction"].number();
     run.unchecked = at["unchecked"].yes();
     run.damping = convert_damping(at["damping"]);
+    run.freeze = at["freeze"].maybe_number();
     run.search = at["search"].text();
     run.skin = at["skin"].maybe_number();
     run.face_path = at["face_path"].yes();

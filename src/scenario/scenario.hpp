@@ -191,6 +191,7 @@ struct RunSpec {
     double step_fraction = 0.8;  // of the rigorous bound, when automatic
     bool unchecked = false;      // accept a time step above the stable estimate, and blocks that pass through each other
     DampingSpec damping;
+    std::optional<double> freeze;  // share of its weight below which a block at rest is frozen; absent: never
     std::string search = "auto";
     std::optional<double> skin;  // m; absent: automatic
     bool face_path = true;       // closed-form path for faces; false: general distance potential everywhere

@@ -1,5 +1,6 @@
 // The explicit method: kick-drift-kick with the springs and the strength of the joints.
 #include "core/errors.hpp"
+#include "dynamics/freeze.hpp"
 #include "dynamics/motion.hpp"
 #include "simulation/deep_overlap.hpp"
 #include "simulation/simulation.hpp"
@@ -16,21 +17,20 @@ constexpr int energy_interval = 100;  // steps between looks at the energy: hard
 }  // namespace
 
 void Simulation::step_explicit(double dt) {
-    load_before_.resize(state_.load.size());  // what is swapped into the state is overwritten, all of it
-    damping_before_.resize(state_.damping.size());
-    load_before_.swap(state_.load);
-    damping_before_.swap(state_.damping);
-    kick(model_, load_before_, state_.motion, dt / 2);  // v(t) -> v(t + dt/2)
+    keep_forces();
+    kick(model_, awake_, load_before_, state_.motion, dt / 2);  // v(t) -> v(t + dt/2)
     drive(model_, state_.stage_time + dt / 2, state_.motion);
-    drift(state_.motion, dt);  // x(t) -> x(t + dt)
+    drift(awake_, state_.motion, dt);  // x(t) -> x(t + dt)
     state_.time += dt;
     state_.stage_time += dt;
     lap(Part::move);
     update_forces(dt);
-    speed_ = account(model_, {load_before_, damping_before_}, {state_.load, state_.damping}, state_, dt, state_.ledger);
+    speed_ =
+        account(model_, awake_, {load_before_, damping_before_}, {state_.load, state_.damping}, state_, dt, state_.ledger);
     lap(Part::account);
-    kick(model_, state_.load, state_.motion, dt / 2);  // v(t + dt/2) -> v(t + dt)
+    kick(model_, awake_, state_.load, state_.motion, dt / 2);  // v(t + dt/2) -> v(t + dt)
     drive(model_, state_.stage_time, state_.motion);
+    if (!state_.calm.empty()) freeze_and_wake();
     check_speed();
     if (!scenario_.run.unchecked && time_to_look(state_.total_steps, speed_, dt, stable_.thinnest)) check_overlaps();
     state_.step_halvings = step_halvings(state_.stage_step, state_.step_halvings, speed_, stable_.thinnest);
@@ -48,17 +48,76 @@ void Simulation::check_overlaps() {
     throw DivergenceError(trouble);
 }
 
+// Those of the step that begins, as they were at its start.
+void Simulation::keep_forces() {
+    load_before_.resize(state_.load.size());
+    damping_before_.resize(state_.damping.size());
+    if (state_.calm.empty()) {  // what is swapped into the state is overwritten, all of it
+        load_before_.swap(state_.load);
+        damping_before_.swap(state_.damping);
+        return;
+    }
+    for (const BlockRange& range : awake_.moving) {
+        std::copy(&state_.load[range.begin], &state_.load[range.begin] + (range.end - range.begin),
+                  &load_before_[range.begin]);
+        if (!state_.damping.empty())
+            std::copy(&state_.damping[range.begin], &state_.damping[range.begin] + (range.end - range.begin),
+                      &damping_before_[range.begin]);
+    }
+}
+
 void Simulation::update_forces(double dt) {  // dt = 0 once at the start: no slip
-    const bool left = place(model_, state_.motion, skin_, placed_);
+    const bool left = place(model_, awake_, state_.motion, skin_, placed_);
     lap(Part::place);
     if (left) refresh(skin_);
+    if (left && !state_.calm.empty()) find_awake();
     lap(Part::search);
     update_contacts(model_, placed_, dt, state_, contact_index_);
     lap(Part::contacts);
-    external_forces(model_, state_, state_.load);
-    sum_contacts(model_, state_.contacts, contact_index_, state_.load);
-    if (model_.local_damping > 0.0) damp_locally(model_, state_.motion, state_.load, state_.damping);
+    weigh(model_, awake_.loaded, state_, state_.load);
+    add_loads(model_, state_, state_.load);
+    sum_contacts(awake_.loaded, state_.contacts, contact_index_, state_.load);
+    if (model_.local_damping > 0.0) damp_locally(model_, awake_, state_.motion, state_.load, state_.damping);
     lap(Part::sum);
+}
+
+void Simulation::find_awake() {
+    const int nb = model_.blocks.size();
+    awake_ = state_.calm.empty() ? all_awake(nb) : awake(model_, state_);
+    was_frozen_.resize(nb);
+    for (BlockId b = 0; b < nb; ++b) {
+        if (was_frozen_[b] == state_.frozen(b)) continue;
+        was_frozen_[b] = state_.frozen(b);
+        sort_contacts_again(model_, state_.contacts, b, contact_index_);
+        if (state_.frozen(b))
+            placed_.block[b] = {state_.motion.position[b], state_.motion.velocity[b], state_.motion.spin[b]};
+    }
+}
+
+double Simulation::frozen_share() const {
+    return steps_done_ == 0 ? 0.0
+                            : 1.0 - static_cast<double>(moved_) / (static_cast<double>(steps_done_) * model_.blocks.size());
+}
+
+void Simulation::freeze_and_wake() {
+    for (const BlockRange& range : awake_.moving) moved_ += range.end - range.begin;
+    // A stage that ends in equilibrium ends none the later for blocks that are frozen before.
+    const double share = std::min(*scenario_.run.freeze, 0.25 * stage().until.equilibrium.value_or(1.0));
+    const Calm calm{share, std::hypot(model_.gravity_x(state_.stage_time), model_.gravity_y(state_.stage_time))};
+    const bool look = state_.total_steps % freeze_interval == 0;
+    if (look) {  // their weight may have changed; nothing else can, or they would be among the loaded
+        weigh(model_, awake_.resting, state_, state_.load);
+        sum_contacts(awake_.resting, state_.contacts, contact_index_, state_.load);
+    }
+    bool changed = wake_disturbed(model_, awake_.loaded, calm, state_);
+    if (look) {
+        changed |= wake_disturbed(model_, awake_.resting, calm, state_);
+        const double before = ledger_error();
+        const bool frozen = freeze_calm(model_, awake_, calm, state_);
+        if (frozen) state_.ledger.local_damping += ledger_error() - before;  // the motion that was left is damped away
+        changed |= frozen;
+    }
+    if (changed) find_awake();
 }
 
 // K - (dt^2/8) F M^-1 F + stored + dissipated - work is what kick-drift-kick keeps exactly while contacts are linear
@@ -73,6 +132,10 @@ void Simulation::check_energy_explicit(double most) {
 }
 
 void Simulation::begin_explicit() {
+    if (scenario_.run.freeze) {
+        wake_all(model_, state_);
+        find_awake();
+    }
     stable_ = stable_step(model_, placed_, state_);
     const StageSpec& now = stage();
     if (now.time_step) {

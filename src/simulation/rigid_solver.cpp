@@ -75,7 +75,7 @@ void Simulation::renew_pairs_rigid(double reach) {
         r.skin = std::max(skin_, 4.0 * reach);
         placed_.boxed.clear();
     }
-    const bool left = place(model_, state_.motion, r.skin - reach, placed_);
+    const bool left = place(model_, awake_, state_.motion, r.skin - reach, placed_);
     lap(Part::place);
     if (left) refresh(r.skin);
     r.renewed |= left;
@@ -152,7 +152,8 @@ void Simulation::half_step_rigid(double dt) {
     move_bodies(bodies, r.before, dt / 2);
     state_.stage_time += dt / 2;
     r.external.resize(model_.blocks.size());
-    external_forces(model_, state_, r.external);
+    weigh(model_, awake_.loaded, state_, r.external);
+    add_loads(model_, state_, r.external);
     drive(model_, state_.stage_time + dt / 2, state_.motion);
     state_.stage_time -= dt / 2;
 

@@ -83,6 +83,7 @@ Simulation::Simulation(const Scenario& scenario, Scene scene)
       state_(std::move(scene.state)),
       report_(std::move(scene.report)),
       driven_(std::exchange(model_.driven, {})),
+      awake_(all_awake(model_.blocks.size())),
       search_(make_search(scenario.run.search)),
       skin_(scenario.run.skin.value_or(default_skin(model_))) {
 #ifdef _OPENMP
@@ -96,7 +97,8 @@ Simulation::Simulation(const Scenario& scenario, Scene scene)
 Simulation::Simulation(const Scenario& scenario, Scene scene, State saved) : Simulation(scenario, std::move(scene)) {
     state_ = std::move(saved);
     apply_stage();
-    place(model_, state_.motion, skin_, placed_);
+    place(model_, awake_, state_.motion, skin_, placed_);
+    find_awake();
     stable_ = stable_step(model_, placed_, state_);
 }
 
@@ -183,6 +185,9 @@ void Simulation::drop_scratch() {
     pairs_.clear();
     statics_.reset();
     rigid_.reset();
+    awake_ = all_awake(model_.blocks.size());
+    place(model_, awake_, state_.motion, skin_, placed_);
+    find_awake();
 }
 
 // ---- stages ---------------------------------------------------------------------------------------------------------
@@ -276,6 +281,8 @@ void Simulation::begin_stage() {
     state_.step_halvings = 0;
     state_.damping.clear();
     state_.release.clear();
+    state_.calm.clear();
+    find_awake();
     state_.calm_checks = 0;
     equilibrium_ = false;
     const std::vector<Joint> before = model_.joints;

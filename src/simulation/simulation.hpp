@@ -5,6 +5,7 @@
 #include "contact/search.hpp"
 #include "core/stopwatch.hpp"
 #include "dynamics/time_step.hpp"
+#include "model/awake.hpp"
 #include "model/build.hpp"
 #include "model/measure.hpp"
 #include "model/placed.hpp"
@@ -72,11 +73,12 @@ public:
     /// of the leapfrog, which comes and goes, does not count. Above `energy_alarm` the run is not to be trusted; beyond
     /// `energy_explosion` it diverges.
     double energy_gain() const;
-    std::int64_t steps_done() const { return steps_done_; }          // in this process
-    double ledger_error() const;                                     // J
-    double max_speed() const { return speed_; }                      // m/s, in the last step
-    std::int64_t refreshes() const { return refreshes_; }            // how often the list of pairs was renewed
-    std::int64_t boxes_renewed() const { return boxes_renewed_; }    // of how many blocks, over all refreshes
+    std::int64_t steps_done() const { return steps_done_; }        // in this process
+    double ledger_error() const;                                   // J
+    double max_speed() const { return speed_; }                    // m/s, in the last step
+    std::int64_t refreshes() const { return refreshes_; }          // how often the list of pairs was renewed
+    std::int64_t boxes_renewed() const { return boxes_renewed_; }  // of how many blocks, over all refreshes
+    double frozen_share() const;  // of the blocks, in the mean of the steps done in this process
     std::string search_choice() const { return search_->choice(); }  // see PairSearch::choice
     const std::array<double, part_names.size()>& seconds() const { return seconds_; }
 
@@ -118,6 +120,9 @@ private:
     void step_static(double dt);
     bool static_over() const;
     void come_to_rest();
+    void keep_forces();
+    void freeze_and_wake();
+    void find_awake();  // after blocks froze or woke
 
     void apply_stage();  // what a stage changes in the model; idempotent
     void delete_blocks();
@@ -140,13 +145,15 @@ private:
     std::vector<Load> boundary_loads_;  // of initial stress: always there
     std::vector<DrivenBlock> driven_;   // act in the last stage only
 
-    Placed placed_;  // Scratch from here on
+    Awake awake_;  // Scratch from here on
+    Placed placed_;
     std::unique_ptr<PairSearch> search_;
     std::vector<Pair> pairs_;
     ContactIndex contact_index_;
     std::vector<Box> boxes_;             // [np] grown by the skin
     std::vector<std::uint8_t> reboxed_;  // [nb] 1 = got new boxes at the last refresh
     std::vector<Force> load_before_, damping_before_;
+    std::vector<std::uint8_t> was_frozen_;  // [nb] as the contacts are sorted
     double skin_ = 0.0;
     std::unique_ptr<StaticSolver> statics_;
     std::unique_ptr<rigid::Scratch> rigid_;  // of the rigid solver, while it is at work
@@ -155,6 +162,7 @@ private:
     bool equilibrium_ = false;
     double speed_ = 0.0;
     std::int64_t refreshes_ = 0, boxes_renewed_ = 0, steps_done_ = 0;
+    std::int64_t moved_ = 0;  // blocks that were computed, summed over the steps
     std::array<double, part_names.size()> seconds_{};
     Stopwatch watch_;
 };

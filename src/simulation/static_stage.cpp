@@ -49,7 +49,7 @@ void Simulation::forces_static() {
     state_.load.resize(load_before_.size());
     update_forces(1.0);
     hold_back(state_.statics, state_.load);
-    speed_ = account(model_, {load_before_, {}}, {state_.load, {}}, state_, 1.0, state_.ledger);
+    speed_ = account(model_, awake_, {load_before_, {}}, {state_.load, {}}, state_, 1.0, state_.ledger);
     lap(Part::account);
     check_speed();
     ++state_.statics.now.evaluations;
@@ -57,13 +57,13 @@ void Simulation::forces_static() {
 
 void Simulation::step_static(double) {
     if (!statics_) statics_ = std::make_unique<StaticSolver>(model_, state_);
-    if (placed_.block.empty()) place(model_, state_.motion, skin_, placed_);
+    if (placed_.block.empty()) place(model_, awake_, state_.motion, skin_, placed_);
     const std::int64_t lists = refreshes_;
     const Forces forces{[this] { forces_static(); },
                         [this, lists] {
                             if (refreshes_ != lists) placed_.boxed.clear();  // the list is that of before again
                             for (ContactIndex::Chunk& chunk : contact_index_.chunks) chunk.sorted = false;
-                            place(model_, state_.motion, skin_, placed_);
+                            place(model_, awake_, state_.motion, skin_, placed_);
                         }};
     statics_->iterate(model_, placed_, *stage().until.equilibrium, forces, state_);
     if (static_over()) come_to_rest();

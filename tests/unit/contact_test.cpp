@@ -27,7 +27,7 @@ struct TwoBlocks {
     void put(BlockId b, const Vec2& at, double angle) {
         scene.state.motion.position[b] = at;
         scene.state.motion.angle[b] = angle;
-        place(scene.model, scene.state.motion, 0.0, placed);
+        place(scene.model, all_awake(scene.model.blocks.size()), scene.state.motion, 0.0, placed);
     }
     PlacedPart part(int i) const { return {scene.model, placed, i}; }
     Vec2 distance() const { return scene.state.motion.position[1] - scene.state.motion.position[0]; }

@@ -30,7 +30,7 @@ struct Boxes {
         place_all();
         renew();
     }
-    bool place_all() { return place(scene.model, scene.state.motion, skin, placed); }
+    bool place_all() { return place(scene.model, all_awake(2), scene.state.motion, skin, placed); }
     int renew() { return rebox(scene.model, scene.state, skin, placed, boxes, reboxed); }
     Motion& motion() { return scene.state.motion; }
 };
@@ -44,7 +44,7 @@ bool same(const Box& a, const Box& b) {
 TEST_CASE("there are no boxes at first; then every part has one, larger by the skin") {
     Boxes b;
     Placed none;
-    CHECK(place(b.scene.model, b.motion(), skin, none));
+    CHECK(place(b.scene.model, all_awake(2), b.motion(), skin, none));
     CHECK_FALSE(b.place_all());
     REQUIRE(b.boxes.size() == 2);
     CHECK(b.boxes[0].xmax - b.boxes[0].xmin == Approx(2.0 + 2.0 * skin));

@@ -24,7 +24,7 @@ Manifold between(const Polygon& first, const Polygon& second, double reach) {
     motion.velocity.assign(2, Vec2::Zero());
     motion.spin = {0.0, 0.0};
     Placed placed;
-    place(model, motion, 0.0, placed);
+    place(model, all_awake(2), motion, 0.0, placed);
     int hint = -1;
     Manifold m = find_manifold(PlacedPart(model, placed, 0), PlacedPart(model, placed, 1),
                                motion.position[1] - motion.position[0], reach, 1e-5, hint);

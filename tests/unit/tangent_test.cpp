@@ -19,7 +19,7 @@ using Vector6 = Eigen::Matrix<double, 6, 1>;
 class PairOfBlocks {
 public:
     explicit PairOfBlocks(Model model) : model_(std::move(model)), state_(test::at_rest(model_)) {
-        place(model_, state_.motion, 0.1, placed_);
+        place(model_, all_awake(2), state_.motion, 0.1, placed_);
         std::vector<Box> boxes;
         std::vector<std::uint8_t> reboxed;
         rebox(model_, state_, 0.1, placed_, boxes, reboxed);
@@ -32,8 +32,8 @@ public:
             state_.motion.velocity[b] = by.segment<2>(3 * b);
             state_.motion.spin[b] = by[3 * b + 2];
         }
-        drift(state_.motion, 1.0);
-        place(model_, state_.motion, 0.1, placed_);
+        drift(all_awake(2), state_.motion, 1.0);
+        place(model_, all_awake(2), state_.motion, 0.1, placed_);
         update_contacts(model_, placed_, 1.0, state_, index_);
     }
 
