@@ -124,7 +124,6 @@ TEST_CASE("what belongs to later versions is refused in one line") {
     check_fault(small_scenario + "strength_reduction: {}\n", "f.yaml:5 strength_reduction", "not available yet");
     check_fault(with("density: 2500", "density: 2500, young: 1e9", small_scenario), "f.yaml:2 materials.rock.young",
                 "not available yet");
-    check_fault(with("solver: explicit", "solver: rigid"), "f.yaml:", "rigid is not available yet");
 }
 
 TEST_CASE("missing keys are named with the table they belong to") {
