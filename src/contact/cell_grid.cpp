@@ -8,11 +8,6 @@
 
 namespace talus {
 
-float rounded_down(double x) {
-    const float f = static_cast<float>(x);
-    return f > x ? std::nextafter(f, -std::numeric_limits<float>::infinity()) : f;
-}
-
 CoarseBox coarse(const Box& b, double margin) {
     return {rounded_down(b.xmin - margin), rounded_down(b.ymin - margin), -rounded_down(-(b.xmax + margin)),
             -rounded_down(-(b.ymax + margin))};

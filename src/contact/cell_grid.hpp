@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <span>
@@ -27,6 +28,15 @@ struct CoarseBox {
     }
 };
 
+/// The largest number in single precision that is not above x. Whether that is the nearest one is a coin toss: no branch
+/// asks.
+inline float rounded_down(double x) {
+    const auto f = static_cast<float>(x);
+    const auto bits = std::bit_cast<std::uint32_t>(f);
+    const auto step = static_cast<std::uint32_t>(f > x);  // towards minus infinity: up in bits if negative, else down
+    return std::bit_cast<float>(bits >> 31 ? bits + step : bits - step);
+}
+
 /// The box as seen, larger by a margin, m, on all sides.
 CoarseBox coarse(const Box& b, double margin);
 
@@ -39,8 +49,6 @@ inline double slack(const CoarseBox& outer, const Box& b) {
 /// listed anew every some thirty steps, slow ones hardly ever. Margins differ a little from box to box, so that boxes that
 /// move together do not all come at the same step.
 double wise_margin(int i, const Box& b, double speed, double typical, double least);
-
-float rounded_down(double x);
 
 /// Marks boxes with very many neighbours, given all pairs of neighbours: to find one among 512 takes half a microsecond.
 std::vector<char> hubs(std::span<const Pair> neighbours, int n);

@@ -1,83 +1,104 @@
-// Safe regions while boxes hardly move against each other. While they mix: Verlet lists, or, for few boxes, incremental
-// sorting. The motion itself tells.
+// Safe regions while boxes hardly move against each other, Verlet lists while they mix. What the two have to do tells.
 #include "contact/moving_search.hpp"
 #include "contact/search_methods.hpp"
 
 #include <algorithm>
-#include <utility>
+#include <cmath>
 
 namespace talus {
 namespace {
 
+/// How fast boxes move, from the first two steps: a few of them, against what most of them do.
+class FirstLook {
+public:
+    void note(std::span<const Box> boxes) {
+        n_ = boxes.size();
+        for (std::size_t i = 0; i < n_; i += every()) sample_.push_back(boxes[i]);
+    }
+
+    /// Mean of how far a box went / its size; 0 where that cannot be said.
+    double pace(std::span<const Box> boxes) {
+        if (boxes.size() != n_) return 0.0;
+        std::vector<double> x, y;
+        for (std::size_t k = 0; k < sample_.size(); ++k) {
+            const Box &then = sample_[k], &now = boxes[k * every()];
+            if (!present(then) || !present(now)) continue;
+            const double size = std::max(now.xmax - now.xmin, now.ymax - now.ymin);
+            const double along_x = (now.xmin - then.xmin) / size, along_y = (now.ymin - then.ymin) / size;
+            if (!std::isfinite(along_x + along_y)) continue;
+            x.push_back(along_x), y.push_back(along_y);
+        }
+        if (x.empty()) return 0.0;
+        double sum = 0.0;
+        const double common_x = median(x), common_y = median(y);
+        for (std::size_t k = 0; k < x.size(); ++k)
+            sum += std::min(std::max(std::abs(x[k] - common_x), std::abs(y[k] - common_y)), 1.0);
+        return sum / static_cast<double>(x.size());
+    }
+
+private:
+    std::size_t every() const { return n_ / 256 + 1; }
+    static double median(std::vector<double> values) {
+        const auto middle = values.begin() + std::ssize(values) / 2;
+        std::nth_element(values.begin(), middle, values.end());
+        return *middle;
+    }
+
+    std::size_t n_ = 0;
+    std::vector<Box> sample_;
+};
+
 class AutoSearch final : public PairSearch {
 public:
     void update(std::span<const Box> boxes) override {
+        if (++steps_ == 1) first_look_.note(boxes);
+        if (steps_ == 2) {
+            const double pace = first_look_.pace(boxes);
+            if (cost_of_regions(pace) > worth_it * cost_of_lists) change(speeds(boxes, pace));
+            first_look_ = {};
+        }
         search_->update(boxes);
-        const double n = std::max(1.0, static_cast<double>(boxes.size()));
-        if (++steps_ == 1) return;  // the first builds
-        activity_ += (std::min(happened() / n, 1.0) - activity_) / std::min(steps_ - 1, memory);
-        if (--wait_ > 0 || !(way_ == Way::regions ? activity_ > lively() : activity_ < calm())) return;
-        change(boxes);
+        if (steps_ == 1) return;  // it builds
+        const MovingSearch::Costs now = search_->costs();
+        const int counted = std::min(++counted_, memory);
+        mine_ += (std::min(now.mine, worst) - mine_) / counted;
+        other_ += (now.other - other_) / counted;
+        // In the first steps, while speeds are not known, regions are too large for many boxes in any scene.
+        if (--wait_ > 0 || mine_ < (steps_ < 4 * memory ? 10.0 : worth_it) * other_) return;
+        change(search_->speeds());
+        search_->update(boxes);
+    }
+
+    void pairs(std::vector<Pair>& pairs) const override { search_->pairs(pairs); }
+    std::string choice() const override { return search_->choice(); }
+
+private:
+    // To change costs as much as dozens of steps.
+    static constexpr double worth_it = 1.3;
+    static constexpr double worst = 300.0;  // ns: a single blow is no reason
+    static constexpr int memory = 16;       // steps
+
+    static std::vector<float> speeds(std::span<const Box> boxes, double pace) {
+        std::vector<float> speeds;
+        for (const Box& b : boxes)
+            speeds.push_back(present(b) ? static_cast<float>(pace * std::max(b.xmax - b.xmin, b.ymax - b.ymin)) : 0.0F);
+        return speeds;
+    }
+
+    void change(const std::vector<float>& speeds) {
+        lists_ = !lists_;
+        search_ = lists_ ? make_verlet_lists() : make_safe_regions();
+        search_->expect(speeds);
+        mine_ = other_ = 0.0, counted_ = 0;
         patience_ = std::min(2 * patience_, 4096);
         wait_ = patience_;
     }
 
-    void pairs(std::vector<Pair>& pairs) const override { search_->pairs(pairs); }
-    std::string choice() const override {
-        return way_ == Way::sorting ? "isu-separated, for few boxes that mix" : search_->choice();
-    }
-
-private:
-    enum class Way { regions, lists, sorting };
-
-    // Where one box in a hundred is looked at in each step, that takes as long as comparing all pairs of all lists, and one
-    // may go either way. Back only when much less happens: each change costs as much as dozens of steps.
-    // In the first steps, while speeds are not known, regions are too large for many boxes in any scene.
-    double lively() const { return steps_ < 4 * memory ? 0.2 : 0.01; }
-    double calm() const { return way_ == Way::lists ? 0.001 : 0.1; }
-    static constexpr int memory = 16;  // steps
-
-    // What the last update had to do one by one: boxes, or exchanges of ends.
-    double happened() {
-        if (moving_) return moving_->looked_at();
-        return static_cast<double>(search_->exchanges() - std::exchange(exchanges_, search_->exchanges()));
-    }
-
-    void change(std::span<const Box> boxes) {
-        const std::vector<float> speeds = moving_ ? moving_->speeds() : std::vector<float>{};
-        way_ = way_ != Way::regions ? Way::regions : few(boxes, speeds) ? Way::sorting : Way::lists;
-        if (way_ == Way::sorting) {
-            moving_ = nullptr;
-            search_ = make_isu_separated_search();
-        } else {
-            auto next = way_ == Way::regions ? make_safe_regions() : make_verlet_lists();
-            next->expect(speeds);
-            moving_ = next.get();
-            search_ = std::move(next);
-        }
-        search_->update(boxes);
-        exchanges_ = search_->exchanges();
-        activity_ = way_ == Way::regions ? 0.0 : 1.0;
-    }
-
-    // Ends of sqrt(N) boxes lie side by side along an axis: sorting costs as sqrt(N) x speed, lists cost as sqrt(speed).
-    // They meet where N x speed is 18 sizes of a box, at 2,000 boxes that move a hundredth of their size.
-    static bool few(std::span<const Box> boxes, std::vector<float> speeds) {
-        std::vector<float> sizes;
-        for (const Box& b : boxes)
-            if (present(b)) sizes.push_back(static_cast<float>(std::max(b.xmax - b.xmin, b.ymax - b.ymin)));
-        if (sizes.empty() || speeds.empty()) return true;
-        for (auto* each : {&sizes, &speeds})
-            std::nth_element(each->begin(), each->begin() + std::ssize(*each) / 2, each->end());
-        return static_cast<double>(boxes.size()) * speeds[speeds.size() / 2] < 18.0 * sizes[sizes.size() / 2];
-    }
-
-    Way way_ = Way::regions;
-    std::unique_ptr<PairSearch> search_ = make_safe_regions();
-    MovingSearch* moving_ = static_cast<MovingSearch*>(search_.get());  // the same, or none
-    double activity_ = 0.0;
-    std::int64_t exchanges_ = 0;
-    int steps_ = 0;
+    bool lists_ = false;
+    std::unique_ptr<MovingSearch> search_ = make_safe_regions();
+    FirstLook first_look_;
+    double mine_ = 0.0, other_ = 0.0;  // ns per box, means over the last steps
+    int steps_ = 0, counted_ = 0;
     int patience_ = memory, wait_ = 3;  // steps until the next change
 };
 

@@ -38,7 +38,7 @@ std::unique_ptr<PairSearch> make_auto_search();
 /// One test per box, and a look at those only whose pairs can have changed: safe_regions.cpp.
 std::unique_ptr<PairSearch> make_safe_regions_search();
 
-/// Pairs of larger boxes, compared at every step and repaired box by box: verlet_lists.cpp.
+/// Every box against the groups of eight that it may reach, at every step: verlet_lists.cpp.
 std::unique_ptr<PairSearch> make_verlet_search();
 
 }  // namespace talus
