@@ -22,11 +22,12 @@ public:
 };
 
 /// ns per box: what safe regions take where boxes move by this part of their size per step, on average. Measured, in slopes
-/// and in rubble; some scenes take twice as much.
-inline double cost_of_regions(double pace) { return 3.0 + 1.5e4 * pace; }
+/// and in rubble; where joints lie along the axes, they take several times as much.
+constexpr double cost_at_rest = 2.0;
+inline double cost_of_regions(double pace) { return cost_at_rest + 1.5e4 * pace; }
 
-/// ns per box: what lists take at any pace.
-constexpr double cost_of_lists = 9.0;
+/// ns per box: what lists take at a moderate pace.
+constexpr double cost_of_lists = 7.5;
 
 /// For boxes that hardly move, or hardly against each other: safe_regions.cpp.
 std::unique_ptr<MovingSearch> make_safe_regions();

@@ -16,6 +16,7 @@ namespace {
 struct Kernels {
     void (*find_escaped)(std::span<const Box>, const Vec2&, const Regions&, int, int, std::vector<int>&);
     void (*compare_watched)(std::span<const Box>, WatchedPairs&);
+    void (*compare_upper)(std::span<const Box>, int, int, UpperBounds&);  // of boxes [4 begin, 4 end)
 };
 
 // ---- any processor ------------------------------------------------------------------------------------------------------
@@ -44,7 +45,21 @@ void compare_plain(std::span<const Box> boxes, WatchedPairs& pairs) {
     }
 }
 
-constexpr Kernels plain{find_escaped_plain, compare_plain};
+unsigned reaches(std::span<const Box> boxes, int i, const UpperBounds& bounds) {
+    const UpperBounds::Beyond other = bounds.beyond[i];
+    return static_cast<unsigned>(boxes[i].xmax >= boxes[other.x].xmin) |
+           static_cast<unsigned>(boxes[i].ymax >= boxes[other.y].ymin) << 1;
+}
+
+void compare_upper_plain(std::span<const Box> boxes, int begin, int end, UpperBounds& bounds) {
+    for (int four = begin; four < end; ++four) {
+        unsigned all = 0;
+        for (int k = 0; k < 4; ++k) all |= reaches(boxes, 4 * four + k, bounds) << (2 * k);
+        bounds.reaches[four] = static_cast<std::uint8_t>(all);
+    }
+}
+
+constexpr Kernels plain{find_escaped_plain, compare_plain, compare_upper_plain};
 
 // ---- AVX-512
 // --------------------------------------------------------------------------------------------------------------
@@ -108,12 +123,26 @@ constexpr Kernels plain{find_escaped_plain, compare_plain};
     }
 }
 
+[[gnu::target("avx512f,avx512dq,avx512vl")]] void compare_upper_avx512(std::span<const Box> boxes, int begin, int end,
+                                                                       UpperBounds& bounds) {
+    const __m256i along = _mm256_setr_epi32(0, 1, 0, 1, 0, 1, 0, 1);
+    for (int four = begin; four < end; ++four) {
+        const std::size_t i = 4 * static_cast<std::size_t>(four);
+        const __m256i others = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(&bounds.beyond[i]));
+        const __m256i places = _mm256_add_epi32(_mm256_slli_epi32(others, 2), along);  // of lower bounds
+        const __m512d lower = _mm512_mask_i32gather_pd(_mm512_setzero_pd(), 255, places, &boxes.front().xmin, 8);
+        const __m512d upper =
+            _mm512_shuffle_f64x2(_mm512_loadu_pd(&boxes[i].xmin), _mm512_loadu_pd(&boxes[i + 2].xmin), 0xdd);
+        bounds.reaches[four] = static_cast<std::uint8_t>(_mm512_cmp_pd_mask(upper, lower, _CMP_GE_OQ));
+    }
+}
+
 bool has_avx512() {
     return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl") &&
            __builtin_cpu_supports("bmi2");
 }
 
-const Kernels best = has_avx512() ? Kernels{find_escaped_avx512, compare_avx512} : plain;
+const Kernels best = has_avx512() ? Kernels{find_escaped_avx512, compare_avx512, compare_upper_avx512} : plain;
 #else
 const Kernels best = plain;
 #endif
@@ -137,15 +166,16 @@ void compare_watched(std::span<const Box> boxes, WatchedPairs& pairs) { best.com
 
 void compare_upper_bounds(std::span<const Box> boxes, int word, UpperBounds& bounds) {
     const auto compare = [&](int i) {
-        const UpperBounds::Beyond other = bounds.beyond[i];
-        bounds.reaches[i] = {boxes[i].xmax >= boxes[other.x].xmin, boxes[i].ymax >= boxes[other.y].ymin};
+        const unsigned others = bounds.reaches[i / 4] & ~(3u << (2 * (i % 4)));
+        bounds.reaches[i / 4] = static_cast<std::uint8_t>(others | reaches(boxes, i, bounds) << (2 * (i % 4)));
     };
     const std::uint64_t watching = bounds.watching[word];
-    if (std::popcount(watching) < 24) {
+    const int whole = std::min(16 * word + 16, static_cast<int>(boxes.size()) / 4);
+    if (std::popcount(watching) < 12) {
         for (std::uint64_t left = watching; left != 0; left &= left - 1) compare(64 * word + std::countr_zero(left));
     } else {  // all, which is faster than to ask who
-        const int end = std::min(64 * word + 64, static_cast<int>(boxes.size()));
-        for (int i = 64 * word; i < end; ++i) compare(i);
+        best.compare_upper(boxes, 16 * word, whole, bounds);
+        for (int i = 4 * whole; i < std::min(64 * word + 64, static_cast<int>(boxes.size())); ++i) compare(i);
     }
 }
 

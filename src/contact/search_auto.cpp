@@ -54,7 +54,7 @@ public:
         if (++steps_ == 1) first_look_.note(boxes);
         if (steps_ == 2) {
             const double pace = first_look_.pace(boxes);
-            if (cost_of_regions(pace) > worth_it * cost_of_lists) change(speeds(boxes, pace));
+            if (cost_of_regions(pace) > cost_of_lists) change(speeds(boxes, pace));
             first_look_ = {};
         }
         search_->update(boxes);
@@ -62,9 +62,9 @@ public:
         const MovingSearch::Costs now = search_->costs();
         const int counted = std::min(++counted_, memory);
         mine_ += (std::min(now.mine, worst) - mine_) / counted;
-        other_ += (now.other - other_) / counted;
+        other_ += ((lists_ ? regions_now(now.other) : now.other) - other_) / counted;
         // In the first steps, while speeds are not known, regions are too large for many boxes in any scene.
-        if (--wait_ > 0 || mine_ < (steps_ < 4 * memory ? 10.0 : worth_it) * other_) return;
+        if (--wait_ > 0 || mine_ < (steps_ < 4 * memory ? 10.0 : worth_it()) * other_) return;
         change(search_->speeds());
         search_->update(boxes);
     }
@@ -73,10 +73,19 @@ public:
     std::string choice() const override { return search_->choice(); }
 
 private:
-    // To change costs as much as dozens of steps.
-    static constexpr double worth_it = 1.3;
+    // To make lists takes as long as some ten steps, to make regions as long as a hundred.
+    double worth_it() const { return lists_ ? 1.3 : 1.0; }
     static constexpr double worst = 300.0;  // ns: a single blow is no reason
     static constexpr int memory = 16;       // steps
+
+    /// ns: what regions would take. If they took more than is usual for the pace when they were left, they will again.
+    double regions_now(double usual) {
+        if (regions_were_ > 0.0) {
+            hard_ = std::max(1.0, (regions_were_ - cost_at_rest) / std::max(usual - cost_at_rest, 0.1));
+            regions_were_ = 0.0;
+        }
+        return cost_at_rest + hard_ * (usual - cost_at_rest);
+    }
 
     static std::vector<float> speeds(std::span<const Box> boxes, double pace) {
         std::vector<float> speeds;
@@ -89,6 +98,7 @@ private:
         lists_ = !lists_;
         search_ = lists_ ? make_verlet_lists() : make_safe_regions();
         search_->expect(speeds);
+        regions_were_ = lists_ ? mine_ : 0.0;
         mine_ = other_ = 0.0, counted_ = 0;
         patience_ = std::min(2 * patience_, 4096);
         wait_ = patience_;
@@ -98,6 +108,7 @@ private:
     std::unique_ptr<MovingSearch> search_ = make_safe_regions();
     FirstLook first_look_;
     double mine_ = 0.0, other_ = 0.0;  // ns per box, means over the last steps
+    double regions_were_ = 0.0, hard_ = 1.0;
     int steps_ = 0, counted_ = 0;
     int patience_ = memory, wait_ = 3;  // steps until the next change
 };

@@ -66,20 +66,19 @@ struct UpperBounds {
     struct Beyond {
         int x, y;  // the other box; the box itself: none
     };
-    struct Reaches {
-        bool x, y;  // whether the upper bound is not below the lower one of the other
-    };
-    std::vector<Beyond> beyond;           // [n]
-    std::vector<Reaches> reaches;         // [n]
+    std::vector<Beyond> beyond;  // [n]
+    std::vector<std::uint8_t>
+        reaches;  // of four boxes: bits x, y, x, y, ...: the upper bound is not below the other's lower
     std::vector<std::uint64_t> watching;  // a bit for every box that watches another, 64 boxes a word; or did
 
     void reset(int n) {
-        reaches.assign(n, {true, true});
+        reaches.assign((n + 3) / 4, 0xff);
         beyond.resize(n);
         for (int i = 0; i < n; ++i) beyond[i] = {i, i};
         watching.assign((n + 63) / 64, 0);
     }
 
+    static int bit(int who, int k) { return 2 * (who % 4) + k / 2; }
     static int owner(int i, int j, int k) { return k % 2 == 0 ? j : i; }
     bool free(int i, int j, int k) const {
         const int who = owner(i, j, k);
@@ -93,15 +92,15 @@ struct UpperBounds {
     }
 
     bool overlaps(int i, int j) const {
-        const int k = of(i, j);
-        const Reaches here = reaches[owner(i, j, k)];
-        return k < 2 ? here.x : here.y;
+        const int k = of(i, j), who = owner(i, j, k);
+        return reaches[who / 4] >> bit(who, k) & 1;
     }
 
     void watch(int i, int j, int k, bool overlaps) {
         const int who = owner(i, j, k);
         (k < 2 ? beyond[who].x : beyond[who].y) = i + j - who;
-        (k < 2 ? reaches[who].x : reaches[who].y) = overlaps;
+        const unsigned others = reaches[who / 4] & ~(1u << bit(who, k));
+        reaches[who / 4] = static_cast<std::uint8_t>(others | static_cast<unsigned>(overlaps) << bit(who, k));
         watching[who / 64] |= std::uint64_t{1} << (who % 64);
     }
 
