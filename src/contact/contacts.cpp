@@ -154,6 +154,12 @@ void make_incidence(const Model& model, const std::vector<Contact>& list, Contac
 
 }  // namespace
 
+bool remembers(const Model& model, const Contact& contact) {
+    if (contact.face >= 0) return true;
+    const Joint& joint = model.joints[contact.joint];
+    return contact.slipped && (joint.weakens || joint.tan_dilation > 0.0);
+}
+
 double memory_reach(const Model& model, PartId a, PartId b) {
     return 0.01 * std::min(model.parts.thickness[a], model.parts.thickness[b]);
 }

@@ -5,7 +5,8 @@
 // neither saved nor counted.
 //
 // Memory (bonds, initial stress, slip, dilation) ends by geometry alone: when the two parts are further apart than
-// `memory_reach`, or when the faces have turned away from each other.
+// `memory_reach`, or when the faces have turned away from each other. Slip is remembered where it matters: on faces, and on
+// joints that it weakens or thickens.
 #pragma once
 
 #include "model/awake.hpp"
@@ -37,14 +38,24 @@ struct FaceSlot {
     int a0, a1, b0, b1;  // corners at the ends of the two edges; those of a and of b start at a0 and at b1
 };
 
+/// Two corners, each inside the other part (global corner indices); see corner_pair().
+struct CornerSlot {
+    int slot;  // in the list
+    BlockId block_a, block_b;
+    int a, a_before, b, b_before;  // the corners, which their second edges start from, and where the first ones start
+    double reach, touch_depth;     // m, as in CornerLines
+};
+
 /// Scratch: follows from the list.
 struct ContactIndex {
     struct Chunk {  // contacts [begin, end) of the list: those whose block a is one of a few neighbouring numbers
         int begin = 0, end = 0;
-        bool sorted = false;          // whether the three kinds below are up to date; all ascending
-        std::vector<FaceSlot> faces;  // alive, without intact bonds: computed many at a time
-        std::vector<int> others;      // alive: corners and bonds
-        std::vector<Idle> idle;       // not alive; also before they are sorted, if nothing has begun or ended since
+        bool sorted = false;              // whether the kinds below are up to date but for `changed`; all ascending
+        std::vector<int> changed;         // contacts that are perhaps of another kind now
+        std::vector<FaceSlot> faces;      // alive, without intact bonds: computed many at a time
+        std::vector<CornerSlot> corners;  // alive: the same
+        std::vector<int> others;          // alive: corners in faces, bonds, what has parted and remembers
+        std::vector<Idle> idle;           // not alive; also before they are sorted, if nothing has begun or ended since
     };
     std::vector<Chunk> chunks;
     // Contacts in which block b is a: [first_a[b], first_a[b+1]) of the list. In which it is b: [first_b[b], first_b[b+1])
@@ -53,6 +64,9 @@ struct ContactIndex {
     std::vector<int> slot_b;            // [n]
     double skin = 0.0;                  // m, how far every point of a block stays from where it got its boxes, per axis
 };
+
+/// Whether a contact knows anything that outlasts a gap between its parts.
+bool remembers(const Model& model, const Contact& contact);
 
 /// m: how far apart two parts may be before their contact forgets.
 double memory_reach(const Model& model, PartId a, PartId b);
