@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace talus {
 namespace {
@@ -15,19 +16,43 @@ constexpr std::int64_t longest_interval = 128;  // steps; a look costs a tenth o
 // it is pressed into, has about a third. Only above this share of the thickness the depth is found, which takes longer.
 constexpr double worth_measuring = 0.02;
 
+constexpr double room_share = 0.75;
+
 bool borders_its_own_block(const Model& model, PartId part) {
     const auto* begin = &model.corners.internal[model.parts.first_corner[part]];
     return std::any_of(begin, begin + (model.parts.first_corner[part + 1] - model.parts.first_corner[part]),
                        [](std::uint8_t internal) { return internal != 0; });
 }
 
-double room(const Model& model, PartId part) {
-    return (borders_its_own_block(model, part) ? 1.0 : 0.75) * model.parts.thickness[part];
+// m: of the part; where it borders on another part of its block, of what lies behind the edges by which one gets in.
+double thickness(const Model& model, PartId part) {
+    if (!borders_its_own_block(model, part)) return model.parts.thickness[part];
+    const BlockId block = model.parts.block[part];
+    const int begin = model.parts.first_corner[model.blocks.first_part[block]],
+              end = model.parts.first_corner[model.blocks.first_part[block + 1]];
+    double least = std::numeric_limits<double>::infinity();
+    for (int k = model.parts.first_corner[part]; k < model.parts.first_corner[part + 1]; ++k) {
+        if (model.corners.internal[k]) continue;
+        double behind = 0.0;
+        for (int j = begin; j < end; ++j)
+            behind = std::max(behind, model.corners.offset[k] - model.corners.normal[k].dot(model.corners.arm[j]));
+        least = std::min(least, behind);
+    }
+    return std::isfinite(least) ? least : model.parts.thickness[part];
+}
+
+// m, largest distance by which an edge that bounds its block keeps the parts apart; < 0: least depth.
+double distance_by_outer_edges(const PlacedPart& p, const PlacedPart& other, double dx, double dy) {
+    double largest = -std::numeric_limits<double>::infinity();
+    for (int k = 0; k < p.n; ++k)
+        if (!p.internal[k]) largest = std::max(largest, separation_by_edge(p, k, other, dx, dy));
+    return largest;
 }
 
 double depth(const Model& model, const Placed& placed, const Contact& c) {
+    const PlacedPart a(model, placed, c.part_a), b(model, placed, c.part_b);
     const Vec2 way = placed.block[model.parts.block[c.part_b]].position - placed.block[model.parts.block[c.part_a]].position;
-    return -separation({model, placed, c.part_a}, {model, placed, c.part_b}, way.x(), way.y()).distance;
+    return -std::max(distance_by_outer_edges(a, b, way.x(), way.y()), distance_by_outer_edges(b, a, -way.x(), -way.y()));
 }
 
 std::string title(const Model& model, BlockId block) {
@@ -39,15 +64,16 @@ std::string title(const Model& model, BlockId block) {
 
 DeepOverlap deepest_overlap(const Model& model, const Placed& placed, const State& state) {
     DeepOverlap deepest;
-    double most = 0.0;  // of its room that a contact has used
+    double most = 0.0;  // of its thickness
     for (const Contact& c : state.contacts.list) {
         if (!c.touching || c.overlap <= 0.0) continue;
-        const double thin = std::min(model.parts.thickness[c.part_a], model.parts.thickness[c.part_b]);
-        const double there = std::min(room(model, c.part_a), room(model, c.part_b));
-        const double here = c.overlap > worth_measuring * thin ? depth(model, placed, c) : c.overlap;
-        if (here <= most * there) continue;
-        most = here / there;
-        deepest = {&c, here, thin, there};
+        const double least = std::min(model.parts.thickness[c.part_a], model.parts.thickness[c.part_b]);
+        const bool measured = c.overlap > worth_measuring * least;
+        const double thin = measured ? std::min(thickness(model, c.part_a), thickness(model, c.part_b)) : least;
+        const double here = measured ? depth(model, placed, c) : c.overlap;
+        if (here <= most * thin) continue;
+        most = here / thin;
+        deepest = {&c, here, thin, room_share * thin};
     }
     return deepest;
 }

@@ -12,16 +12,17 @@ namespace talus {
 
 struct DeepOverlap {
     const Contact* contact = nullptr;  // none: no contact is pressed
-    double depth = 0.0;                // m, shortest way that would part the two
-    double thickness = 0.0;            // m, smallest width of the thinner part
+    double depth = 0.0;                // m, shortest way that would part the two, out through the boundary of a block
+    double thickness = 0.0;            // m, of the thinner part
     double room = 0.0;                 // m, depth at which the two begin to pass through each other
     double share() const { return contact ? depth / thickness : 0.0; }
 };
 
 /// The contact that has used most of its room. Forces push back until the middles of both parts meet, at (t_a + t_b)/2, and
 /// then out on the other side; the way that parts them is never longer than that. Three quarters of the thinner part are
-/// taken: half of it is common where rock falls on soft joints, all of it may be reached for an instant only. A part of a
-/// concave block may be pressed in by its whole width, for what lies behind it is the same block.
+/// taken: half of it is common where rock falls on soft joints, all of it may be reached for an instant only. The thickness
+/// of a part is its smallest width; where it borders on another part of its block, the least that lies of the block behind
+/// one of its outer edges: through an inner edge nothing gets out.
 DeepOverlap deepest_overlap(const Model& model, const Placed& placed, const State& state);
 
 /// "0.02 m, 40 % of the thinner part (0.05 m), between block 0 `wall` and block 1 at (x, y)".
