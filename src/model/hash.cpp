@@ -46,6 +46,7 @@ std::uint64_t state_hash(const Model& model, const State& state) {
     const Statics& statics = state.statics;
     hash << statics.load_share << statics.damping << statics.shift << statics.now.ratio;
     hash << static_cast<std::uint64_t>(statics.now.iterations);
+    hash << static_cast<std::uint64_t>(state.unsolved.steps) << state.unsolved.way;
     for (const std::uint8_t looks : state.calm) hash << static_cast<int>(looks);
     for (const std::uint8_t cell : state.contacts.broken) hash << static_cast<int>(cell);
     return hash.value();

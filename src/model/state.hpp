@@ -110,6 +110,13 @@ struct Statics {
     std::vector<double> newton_ratios;    // unbalanced after each step of Newton that helped, of all static stages
 };
 
+/// What sweeps of the rigid solver left when there were too many of them.
+struct Unsolved {
+    std::int64_t steps = 0;  // in which that was
+    double speed = 0.0;      // m/s, largest relative velocity that was still to change
+    double way = 0.0;        // m, sum of these speeds times the steps: how far blocks may have crept
+};
+
 struct State {
     double time = 0.0;        // s, since the last reset
     double stage_time = 0.0;  // s, since the stage began
@@ -131,6 +138,7 @@ struct State {
     Ledger ledger;
     double earlier_gain = 0.0;  // energy_gain before the last reset
     Statics statics;
+    Unsolved unsolved;
 
     static constexpr std::uint8_t calm_needed = 2;
     /// At rest, see dynamics/freeze.hpp.

@@ -18,7 +18,8 @@ namespace {
 [[maybe_unused]] void every_member_is_transferred(const State& state, const Contact& contact) {
     [[maybe_unused]] const auto& [time, stage_time, calm, step, total_steps, stage, stage_step, halvings, motion, load,
                                   damping, contacts, calm_looks, removed, release, start_position, start_angle, ledger,
-                                  earlier_gain, statics] = state;
+                                  earlier_gain, statics, unsolved] = state;
+    [[maybe_unused]] const auto& [unsolved_steps, unsolved_speed, unsolved_way] = unsolved;
     [[maybe_unused]] const auto& [held_back, load_share, load_rate, window_position, window_angle, window_load, window,
                                   relaxation_damping, shift, polish_at, patience, start, look_at, look_share, look_ratio,
                                   look_distance, suspicious, now, earlier, newton_ratios] = state.statics;
@@ -239,6 +240,9 @@ void transfer(Archive& to, AnyState& state) {
     to.one("ledger/gained", "J", state.ledger.gained);
     to.one("ledger/largest", "J", state.ledger.largest);
     to.one("earlier_gain", "1", state.earlier_gain);
+    to.one("unsolved/steps", "1", state.unsolved.steps);
+    to.one("unsolved/speed", "m/s", state.unsolved.speed);
+    to.one("unsolved/way", "m", state.unsolved.way);
     transfer_statics(to, state.statics);
 }
 

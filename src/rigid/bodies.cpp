@@ -26,21 +26,44 @@ private:
     std::vector<int> parent_;
 };
 
+std::string title(const Model& model, BlockId b) {
+    const Vec2 at = model.blocks.start[b] + model.origin;
+    const std::string& name = model.blocks.name[b];
+    return "block " + std::to_string(b) + (name.empty() ? "" : " `" + name + "`") + " at (" + number(at.x()) + ", " +
+           number(at.y()) + ")";
+}
+
+constexpr const char* remedy = "; give its contacts a joint without cohesion and tension, or use solver: explicit";
+
+// What is held or driven along all axes takes along all that is bonded to it.
+BlockId driver_of(const Model& model, std::span<const BlockId> members) {
+    BlockId driver = -1, held = -1;
+    for (const BlockId b : members) {
+        const Blocks& blocks = model.blocks;
+        const bool free = blocks.inv_mass[b].x() > 0.0 && blocks.inv_mass[b].y() > 0.0 && blocks.inv_inertia[b] > 0.0;
+        if (free) continue;
+        if (!blocks.held(b))
+            throw InputError("the rigid solver cannot bond a block that is held or driven along some axes only to others: " +
+                             title(model, b) + remedy);
+        const bool drives = std::ranges::any_of(
+            model.driven, [&](const DrivenBlock& d) { return d.block == b && (d.x || d.y || d.rotation); });
+        BlockId& mine = drives ? driver : held;
+        if (drives && driver >= 0)
+            throw InputError("the rigid solver cannot bond blocks that are both driven: " + title(model, driver) + " and " +
+                             title(model, b) + remedy);
+        mine = b;
+    }
+    if (driver >= 0 && held >= 0)
+        throw InputError("the rigid solver cannot bond a block that is driven to one that is held: " + title(model, driver) +
+                         " and " + title(model, held) + remedy);
+    return driver;
+}
+
 Softness softness_of(const Model& model, std::span<const BlockId> members) {
     const Blocks& blocks = model.blocks;
     if (members.size() == 1) {
         const BlockId b = members.front();
         return {blocks.inv_mass[b].x(), blocks.inv_mass[b].y(), blocks.inv_inertia[b]};
-    }
-    for (const BlockId b : members) {
-        const bool free = blocks.inv_mass[b].x() > 0.0 && blocks.inv_mass[b].y() > 0.0 && blocks.inv_inertia[b] > 0.0;
-        const Vec2 at = blocks.start[b] + model.origin;
-        if (!free && !blocks.held(b))
-            throw InputError(
-                "the rigid solver cannot bond a block that is held along some axes only, or driven, to others: "
-                "block " +
-                std::to_string(b) + " at (" + number(at.x()) + ", " + number(at.y()) +
-                "); give its contacts a joint without cohesion and tension, or use solver: explicit");
     }
     double mass = 0.0, inertia = 0.0;
     Vec2 centre = Vec2::Zero();
@@ -57,6 +80,12 @@ Softness softness_of(const Model& model, std::span<const BlockId> members) {
 }
 
 }  // namespace
+
+Velocity seen_from(const Motion& motion, BlockId block, const Vec2& point) {
+    const double spin = motion.spin[block];
+    const Vec2 v = motion.velocity[block] + spin * perp(point - motion.position[block]);
+    return {v.x(), v.y(), spin};
+}
 
 double intact_length(const Model& model, const State& state, const Contact& c) {
     if (c.face < 0 || !model.faces[c.face].bonded) return 0.0;
@@ -89,9 +118,12 @@ Bodies join_bonded(const Model& model, const State& state) {
     for (BlockId b = 0; b < nb; ++b) bodies.member[next[bodies.body_of[b]]++] = b;
     bodies.position.resize(nq);
     bodies.velocity.resize(nq);
-    for (int q = 0; q < nq; ++q)
-        bodies.softness.push_back(
-            softness_of(model, std::span(bodies.member).subspan(bodies.first[q], bodies.first[q + 1] - bodies.first[q])));
+    for (int q = 0; q < nq; ++q) {
+        const auto members =
+            std::span<const BlockId>(bodies.member).subspan(bodies.first[q], bodies.first[q + 1] - bodies.first[q]);
+        bodies.driver.push_back(members.size() > 1 ? driver_of(model, members) : -1);
+        bodies.softness.push_back(softness_of(model, members));
+    }
     return bodies;
 }
 
@@ -116,6 +148,10 @@ void gather(const Model& model, const Motion& motion, Bodies& bodies) {
         }
         centre /= mass;
         bodies.position[q] = start + centre;
+        if (const BlockId driver = bodies.driver[q]; driver >= 0) {
+            bodies.velocity[q] = seen_from(motion, driver, bodies.position[q]);
+            continue;
+        }
         double spin = 0.0;  // from the moment of momentum: blocks that have just been joined may differ
         for (int i = bodies.first[q]; i < bodies.first[q + 1]; ++i) {
             const BlockId b = bodies.member[i];

@@ -17,6 +17,7 @@ struct Bodies {
     std::vector<int> first;          // [nq+1] blocks of body q are member[first[q]..first[q+1])
     std::vector<BlockId> member;     // [nb]
     std::vector<Softness> softness;  // [nq]
+    std::vector<BlockId> driver;     // [nq] block of several that prescribes the motion of all of them, -1 = none
     std::vector<Vec2> position;      // [nq] m, centroid
     std::vector<Velocity> velocity;  // [nq]
     int size() const { return static_cast<int>(softness.size()); }
@@ -29,8 +30,12 @@ double intact_length(const Model& model, const State& state, const Contact& cont
 /// True while the two blocks at a joint face must move as one: some cells are intact and it has not slipped.
 bool holds(const Model& model, const State& state, const Contact& contact);
 
-/// Which blocks move as one now.
+/// Which blocks move as one now. Throws InputError where bonds join blocks that cannot: held along some axes only, or two
+/// of which the motion is prescribed.
 Bodies join_bonded(const Model& model, const State& state);
+
+/// Of a body that moves with `block`, at `point` (m).
+Velocity seen_from(const Motion& motion, BlockId block, const Vec2& point);
 
 /// Takes positions and velocities of the bodies from those of the blocks.
 void gather(const Model& model, const Motion& motion, Bodies& bodies);

@@ -1,13 +1,22 @@
 #include "rigid/impulses.hpp"
 
+#include "rigid/direct.hpp"
+
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 namespace talus::rigid {
 namespace {
 
 // Both ends so close together that rounding decides which carries what: (window / arm)^2 is of this size.
 constexpr double nearly_one = 1e-10;
+
+// Sweeps after which what is left is solved directly, and direct solutions one after the other. A block on a chip of a
+// millionth of its mass takes four; where ten would be needed sweeps do better.
+constexpr int patience = 30;
+constexpr int tries = 5;
 
 struct Approach {  // of b against a
     double x, y, spin_a, spin_b;
@@ -46,9 +55,8 @@ void two_ends(const Touch& c, double q0, double q1, double p[2]) {
     p[1] = std::max(-(q1 + c.k01 * p[0]) / c.k11, 0.0);
 }
 
-/// One contact by itself; returns the largest change of a relative velocity, m/s. `norm` grows by the change in the measure
-/// of kinetic energy.
-double solve_one(Touch& c, std::span<const Softness> bodies, std::span<Velocity> v, double& norm) {
+/// One contact by itself; returns the largest change of a relative velocity, m/s.
+double solve_one(Touch& c, std::span<const Softness> bodies, std::span<Velocity> v) {
     const double old[3] = {c.p[0], c.p[1], c.p[2]};
     const Approach u = approach(c, v);
     const double u0 = along_normal(c, u, 0);
@@ -62,12 +70,19 @@ double solve_one(Touch& c, std::span<const Softness> bodies, std::span<Velocity>
     double change[3] = {c.p[0] - old[0], c.p[1] - old[1], 0.0};
     if (change[0] != 0.0 || change[1] != 0.0) apply(c, change, bodies, v);
     const double bound = c.friction * (c.p[0] + c.p[1]) + c.cohesion;
-    c.p[2] = std::clamp(old[2] - along_tangent(c, approach(c, v)) / c.kt, -bound, bound);
+    c.p[2] = std::clamp(old[2] - (along_tangent(c, approach(c, v)) - c.sticks) / c.kt, -bound, bound);
     const double sheared[3] = {0.0, 0.0, c.p[2] - old[2]};
     if (sheared[2] != 0.0) apply(c, sheared, bodies, v);
     const double d0 = change[0] * c.k00, d1 = change[1] * c.k11, dt = sheared[2] * c.kt;
-    norm += change[0] * d0 + change[1] * d1 + sheared[2] * dt;
     return std::max({std::abs(d0), std::abs(d1), std::abs(dt)});
+}
+
+/// One sweep to and fro; returns the largest change of a relative velocity, m/s.
+double sweep_over(std::span<Touch> touches, std::span<const Softness> bodies, std::span<Velocity> velocity) {
+    double largest = 0.0;
+    for (Touch& c : touches) solve_one(c, bodies, velocity);
+    for (std::size_t i = touches.size(); i-- > 0;) largest = std::max(largest, solve_one(touches[i], bodies, velocity));
+    return largest;
 }
 
 }  // namespace
@@ -96,48 +111,89 @@ void apply(const Touch& c, const double p[3], std::span<const Softness> bodies, 
     vb.spin += b.spin * (c.arm_b[0] * p[0] + c.arm_b[1] * p[1] + c.arm_b[2] * p[2]);
 }
 
-int ImpulseSolver::solve(std::span<Touch> touches, std::span<const Softness> bodies, std::span<Velocity> velocity,
-                         Convergence until) {
-    const int n = static_cast<int>(touches.size()), nb = static_cast<int>(velocity.size());
-    double last_norm = 0.0;
-    for (int sweep = 0; sweep < until.sweeps; ++sweep) {
-        // What a sweep changes is taken against the state before it.
-        impulse_.resize(3 * n);
-        for (int i = 0; i < n; ++i) std::copy_n(touches[i].p, 3, &impulse_[3 * i]);
-        velocity_.assign(velocity.begin(), velocity.end());
-        double norm = 0.0, largest = 0.0;
-        for (int i = 0; i < n; ++i) solve_one(touches[i], bodies, velocity, norm);
-        for (int i = n - 1; i >= 0; --i) largest = std::max(largest, solve_one(touches[i], bodies, velocity, norm));
-        norm = 0.0;
-        for (int i = 0; i < n; ++i) {
-            const Touch& c = touches[i];
-            const double d[3] = {c.p[0] - impulse_[3 * i], c.p[1] - impulse_[3 * i + 1], c.p[2] - impulse_[3 * i + 2]};
-            norm += d[0] * d[0] * c.k00 + d[1] * d[1] * c.k11 + d[2] * d[2] * c.kt;
+Solution ImpulseSolver::solve(std::span<Touch> touches, std::span<const Softness> bodies, std::span<Velocity> velocity,
+                              Convergence until) {
+    norm_ = 0.0;
+    double left = std::numeric_limits<double>::infinity();  // where sweeps alone had come when they were helped
+    for (int sweep = 1;; ++sweep) {
+        keep(touches, velocity);
+        const double largest = sweep_over(touches, bodies, velocity);
+        if (largest <= until.tolerance || sweep >= until.sweeps) return {sweep, largest};
+        if (sweep % patience == 0 && largest < left) {
+            const double helped = help(touches, bodies, velocity, largest, until.tolerance);
+            if (helped <= until.tolerance) return {sweep, helped};
+            left = helped < largest ? helped : 0.0;
+            norm_ = 0.0;
+            continue;
         }
-        if (largest <= until.tolerance || sweep + 1 == until.sweeps) return sweep + 1;
-
-        const double share = sweep > 0 ? norm / last_norm : 2.0;
-        last_norm = norm;
-        if (share > 1.0) {  // got worse: begin anew along the gradient
-            impulse_direction_.assign(3 * n, 0.0);
-            velocity_direction_.assign(nb, {});
-        }
-        const double kept = share > 1.0 ? 0.0 : share;
-        for (int i = 0; i < n; ++i)
-            for (int k = 0; k < 3; ++k) {
-                double& direction = impulse_direction_[3 * i + k];
-                const double change = touches[i].p[k] - impulse_[3 * i + k];
-                touches[i].p[k] += kept * direction;
-                direction = kept * direction + change;
-            }
-        for (int b = 0; b < nb; ++b) {
-            Velocity &direction = velocity_direction_[b], &v = velocity[b];
-            const Velocity change{v.x - velocity_[b].x, v.y - velocity_[b].y, v.spin - velocity_[b].spin};
-            v = {v.x + kept * direction.x, v.y + kept * direction.y, v.spin + kept * direction.spin};
-            direction = {kept * direction.x + change.x, kept * direction.y + change.y, kept * direction.spin + change.spin};
-        }
+        accelerate(touches, velocity);
     }
-    return until.sweeps;
+}
+
+/// Direct solutions and sweeps in turn, for either finds which contacts press when the other has moved them; forgotten if
+/// that leads away. Returns what is left then, m/s.
+double ImpulseSolver::help(std::span<Touch> touches, std::span<const Softness> bodies, std::span<Velocity> velocity,
+                           double left, double tolerance) {
+    remember(touches, velocity);
+    DirectSolver direct;
+    double now = left;
+    for (int i = 0; i < tries && now > tolerance; ++i) {
+        if (!direct.solve(touches, bodies, velocity, tolerance)) {
+            now = std::numeric_limits<double>::infinity();
+            break;
+        }
+        now = sweep_over(touches, bodies, velocity);
+    }
+    if (now < left) return now;
+    recall(touches, velocity);
+    return left;
+}
+
+void ImpulseSolver::remember(std::span<const Touch> touches, std::span<const Velocity> velocity) {
+    touches_before_.assign(touches.begin(), touches.end());
+    velocity_before_.assign(velocity.begin(), velocity.end());
+}
+
+void ImpulseSolver::recall(std::span<Touch> touches, std::span<Velocity> velocity) const {
+    std::ranges::copy(touches_before_, touches.begin());
+    std::ranges::copy(velocity_before_, velocity.begin());
+}
+
+/// What a sweep changes is taken against the state before it.
+void ImpulseSolver::keep(std::span<const Touch> touches, std::span<const Velocity> velocity) {
+    impulse_.resize(3 * touches.size());
+    for (std::size_t i = 0; i < touches.size(); ++i) std::copy_n(touches[i].p, 3, &impulse_[3 * i]);
+    velocity_.assign(velocity.begin(), velocity.end());
+}
+
+/// Goes on along the direction of the sweeps before.
+void ImpulseSolver::accelerate(std::span<Touch> touches, std::span<Velocity> velocity) {
+    double norm = 0.0;
+    for (std::size_t i = 0; i < touches.size(); ++i) {
+        const Touch& c = touches[i];
+        const double d[3] = {c.p[0] - impulse_[3 * i], c.p[1] - impulse_[3 * i + 1], c.p[2] - impulse_[3 * i + 2]};
+        norm += d[0] * d[0] * c.k00 + d[1] * d[1] * c.k11 + d[2] * d[2] * c.kt;
+    }
+    const bool worse = norm > norm_;  // begin anew along the gradient
+    const double kept = worse || norm == 0.0 ? 0.0 : norm / norm_;
+    norm_ = norm;
+    if (worse) {
+        impulse_direction_.assign(3 * touches.size(), 0.0);
+        velocity_direction_.assign(velocity.size(), {});
+    }
+    for (std::size_t i = 0; i < touches.size(); ++i)
+        for (int k = 0; k < 3; ++k) {
+            double& direction = impulse_direction_[3 * i + k];
+            const double change = touches[i].p[k] - impulse_[3 * i + k];
+            touches[i].p[k] += kept * direction;
+            direction = kept * direction + change;
+        }
+    for (std::size_t b = 0; b < velocity.size(); ++b) {
+        Velocity &direction = velocity_direction_[b], &v = velocity[b];
+        const Velocity change{v.x - velocity_[b].x, v.y - velocity_[b].y, v.spin - velocity_[b].spin};
+        v = {v.x + kept * direction.x, v.y + kept * direction.y, v.spin + kept * direction.spin};
+        direction = {kept * direction.x + change.x, kept * direction.y + change.y, kept * direction.spin + change.spin};
+    }
 }
 
 }  // namespace talus::rigid

@@ -15,6 +15,7 @@ constexpr double tie = 1e-9;
 struct BestEdge {
     double distance = -std::numeric_limits<double>::infinity();
     int edge = -1;
+    double of_any = -std::numeric_limits<double>::infinity();  // inner edges too
 };
 
 /// Looks at every edge; false if one of them keeps the two further apart than `reach` (`edge` is that one then).
@@ -25,7 +26,8 @@ bool look(const PlacedPart& shape, const PlacedPart& other, double dx, double dy
             best.edge = k;
             return false;
         }
-        if (!shape.internal[k] && distance > best.distance) best = {distance, k};
+        best.of_any = std::max(best.of_any, distance);
+        if (!shape.internal[k] && distance > best.distance) best.distance = distance, best.edge = k;
     }
     return true;
 }
@@ -61,8 +63,46 @@ Manifold along_face(const PlacedPart& face, int k, const PlacedPart& other, cons
         const double gap = g0 + slope * (s - s0);
         if (gap > reach) continue;
         if (m.count == 0) m.single_low = s == lo;
+        m.corner_of_b[m.count] = s == s0 || s == s1;  // of the other part
         m.gap[m.count] = gap;
         m.point[m.count++] = start + s * t + 0.5 * gap * n;
+    }
+    return m;
+}
+
+/// The outer edge that the other part came through last, of those that kept the two apart at the start; `best.distance` is
+/// that time, in s before now, negative.
+void look_back(const PlacedPart& face, const PlacedPart& other, const Vec2& to_other, const Velocity& mine,
+               const Velocity& its, double since, BestEdge& best) {
+    for (int k = 0; k < face.n; ++k) {
+        if (face.internal[k]) continue;
+        const Vec2& n = face.normal(k);
+        double now = std::numeric_limits<double>::infinity(), then = now;
+        for (int i = 0; i < other.n; ++i) {
+            const Vec2 arm = other.arm(i), place = arm + to_other;
+            const double gap = n.dot(place - face.arm(k));
+            const Vec2 speed = Vec2(its.x - mine.x, its.y - mine.y) + its.spin * perp(arm) - mine.spin * perp(place);
+            now = std::min(now, gap);
+            then = std::min(then, gap - since * n.dot(speed));
+        }
+        if (now >= 0.0 || then < 0.0) continue;
+        const double met = -since * now / (now - then);  // then > 0 > now
+        if (met > best.distance) best.distance = met, best.edge = k;
+    }
+}
+
+/// A manifold of b and a as one of a and b.
+Manifold seen_from_a(Manifold m, const Vec2& d) {
+    m.normal = -m.normal;
+    m.face_of_b = true;
+    for (bool& corner : m.corner_of_b) corner = !corner;
+    std::swap(m.edge_a, m.edge_b);
+    m.single_low = !m.single_low;
+    for (Vec2& p : m.point) p += d;  // half-way between both parts, seen from a
+    if (m.count == 2) {
+        std::swap(m.point[0], m.point[1]);
+        std::swap(m.gap[0], m.gap[1]);
+        std::swap(m.corner_of_b[0], m.corner_of_b[1]);
     }
     return m;
 }
@@ -85,18 +125,26 @@ Manifold find_manifold(const PlacedPart& a, const PlacedPart& b, const Vec2& d, 
         return {};
     }
     hint = -1;
-    if (of_a.edge < 0 || of_b.edge < 0) return {};  // a part inside its block
-    if (of_a.distance >= of_b.distance - tie) return along_face(a, of_a.edge, b, d, reach, narrow);
-    Manifold m = along_face(b, of_b.edge, a, -d, reach, narrow);
-    m.normal = -m.normal;
-    std::swap(m.edge_a, m.edge_b);
-    m.single_low = !m.single_low;
-    for (Vec2& p : m.point) p += d;  // half-way between both parts, seen from a
-    if (m.count == 2) {
-        std::swap(m.point[0], m.point[1]);
-        std::swap(m.gap[0], m.gap[1]);
+    Manifold m;
+    const double distance = std::max(of_a.of_any, of_b.of_any);
+    if (of_a.edge < 0 || of_b.edge < 0) {  // a part inside its block
+        m.distance = distance;
+        return m;
     }
+    m = of_a.distance >= of_b.distance - tie ? along_face(a, of_a.edge, b, d, reach, narrow)
+                                             : seen_from_a(along_face(b, of_b.edge, a, -d, reach, narrow), d);
+    m.distance = distance;
     return m;
+}
+
+Manifold find_manifold(const PlacedPart& a, const PlacedPart& b, const Vec2& d, double reach, double narrow,
+                       const OnTheWay& way) {
+    BestEdge of_a, of_b;  // by the time before the middle at which they met, negative
+    look_back(a, b, d, way.a, way.b, way.since, of_a);
+    look_back(b, a, -d, way.b, way.a, way.since, of_b);
+    if (of_a.edge < 0 && of_b.edge < 0) return {};
+    return of_a.distance >= of_b.distance ? along_face(a, of_a.edge, b, d, reach, narrow)
+                                          : seen_from_a(along_face(b, of_b.edge, a, -d, reach, narrow), d);
 }
 
 }  // namespace talus::rigid

@@ -2,6 +2,7 @@
 
 #include "contact/contacts.hpp"
 #include "contact/separation.hpp"
+#include "core/turn.hpp"
 
 #include <algorithm>
 #include <array>
@@ -13,7 +14,9 @@ namespace {
 // Shares of the smaller thickness of two parts. Touching: what the cut of a rock leaves between neighbours by rounding is
 // 1e-12 of it. Narrow: two corners that overlap by less along the joint pass each other; larger, and blocks that slide over
 // a row of others catch on steps of that height, smaller, and they catch on what the solver leaves of overlap.
-constexpr double touching = 1e-9, narrow = 1e-5;
+// Came in: of an overlap above this it counts through which face the two came together. Resting and sliding blocks stay
+// below a hundredth of it; ten times as much, and steps that are a thousandth as high as a block are run over.
+constexpr double touching = 1e-9, narrow = 1e-5, came_in = 1e-4;
 
 Vec2 velocity_at(const Velocity& v, const Vec2& arm) { return Vec2(v.x, v.y) + v.spin * perp(arm); }
 
@@ -31,6 +34,65 @@ double tangent_velocity(const Touch& c, std::span<const Velocity> v) {
 double place(const Manifold& m, int end) {
     if (m.count == 2) return end == 0 ? -0.5 * m.length : 0.5 * m.length;
     return m.single_low ? -0.5 * m.length : 0.5 * m.length;
+}
+
+double thinner(const Model& model, const Contact& c) {
+    return std::min(model.parts.thickness[c.part_a], model.parts.thickness[c.part_b]);
+}
+
+/// The end at which friction acts.
+int nearest(const Manifold& m) { return m.count == 2 && m.gap[1] < m.gap[0] ? 1 : 0; }
+
+struct Ahead {          // of the middle of the step, as both bodies moved before it
+    double time = 0.0;  // s
+    Velocity a{}, b{};
+};
+
+/// Directions and arms of a touch; `from_a`: of the centroid of its block a from that of the body (m).
+void set_arms(const Manifold& m, const Vec2& from_a, const Bodies& bodies, const Ahead& ahead, Touch& c) {
+    const Velocity& face = m.face_of_b ? ahead.b : ahead.a;
+    const Turn turned = turn(ahead.time * face.spin);
+    const Vec2 n = turned.c * m.normal + turned.s * perp(m.normal);
+    c.nx = n.x(), c.ny = n.y();
+    const Vec2 to_b = bodies.position[c.b] - bodies.position[c.a];
+    const Vec2 apart = to_b + ahead.time * Vec2(ahead.b.x - ahead.a.x, ahead.b.y - ahead.a.y);
+    for (int end = 0; end < m.count; ++end) {
+        Vec2 arm = m.point[end] + from_a;  // from a
+        if (ahead.time != 0.0) {           // the corner moves with its body, and comes onto the face
+            const bool of_b = m.corner_of_b[end];
+            const Turn own = turn(ahead.time * (of_b ? ahead.b.spin : ahead.a.spin));
+            const Vec2 corner = arm + (of_b ? 0.5 : -0.5) * m.gap[end] * m.normal - (of_b ? to_b : Vec2(Vec2::Zero()));
+            arm = own.c * corner + own.s * perp(corner) + (of_b ? apart : Vec2(Vec2::Zero()));
+        }
+        c.arm_a[end] = cross(arm, n);
+        c.arm_b[end] = cross(arm - apart, n);
+        if (end != nearest(m)) continue;
+        c.arm_a[2] = cross(arm, perp(n));
+        c.arm_b[2] = cross(arm - apart, perp(n));
+    }
+    prepare(c, bodies.softness);
+}
+
+// A corner goes along an arc: a velocity that has no part along the normal now would lift it off the face or press it in
+// within the step, and one without a part along the face would let it slip. Blocks that turn about a corner are of second
+// order by this. m/s2, of the corner against the face along the normal and perp(normal), while both bodies move on as they
+// do.
+Vec2 bend(const Manifold& m, const Bodies& bodies, const Vec2& from_a, const Touch& c, int end) {
+    const Velocity &a = bodies.velocity[c.a], &b = bodies.velocity[c.b];
+    if (a.spin == 0.0 && b.spin == 0.0) return Vec2::Zero();
+    const Vec2 arm_a = m.point[end] + from_a, arm_b = arm_a - (bodies.position[c.b] - bodies.position[c.a]);
+    const Vec2 inward = a.spin * a.spin * arm_a - b.spin * b.spin * arm_b;
+    const Vec2 slip = Vec2(b.x - a.x, b.y - a.y) + b.spin * perp(arm_b) - a.spin * perp(arm_a);
+    const Vec2 n = m.normal, t = perp(n);
+    const double face = 2.0 * (m.face_of_b ? b.spin : a.spin);
+    return {n.dot(inward) + face * t.dot(slip), t.dot(inward) - face * n.dot(slip)};
+}
+
+/// s, after the start of a step of dt, at which a gap closes that is `gap` (m) then and changes by `speed` (m/s, < 0) and
+/// the acceleration of weight and loads (m/s2); without the latter a block that bounces gains m g2 dt2 / 6 each time.
+double time_of_impact(double gap, double speed, double acceleration, double dt) {
+    const double root = std::sqrt(std::max(speed * speed - 2.0 * acceleration * gap, 0.0));
+    return std::clamp(2.0 * gap / (root - speed), 0.0, dt);
 }
 
 bool fits_bond(const Model& model, const Contact& c) { return c.face >= 0 && model.faces[c.face].bonded; }
@@ -65,19 +127,36 @@ void Touches::find(const Model& model, const Placed& placed, const State& state,
     for (int i = 0; i < n; ++i) {
         const Contact& c = state.contacts.list[i];
         const BlockId a = model.parts.block[c.part_a], b = model.parts.block[c.part_b];
-        found_[i].count = 0;
+        found_[i] = {};
         if (bodies.body_of[a] == bodies.body_of[b]) continue;
-        const double thickness = std::min(model.parts.thickness[c.part_a], model.parts.thickness[c.part_b]);
+        const double thickness = thinner(model, c);
         const double reach = 0.5 * dt * (speed_[a] + speed_[b]) + touching * thickness;
         found_[i] = find_manifold(PlacedPart(model, placed, c.part_a), PlacedPart(model, placed, c.part_b),
                                   placed.block[b].position - placed.block[a].position, reach, narrow * thickness, hint_[i]);
+        if (found_[i].distance >= -came_in * thickness) continue;
+        const auto of = [&](BlockId block) {
+            const Velocity& v = before[bodies.body_of[block]];
+            const Vec2 u = velocity_at(v, placed.block[block].position - bodies.position[bodies.body_of[block]]);
+            return Velocity{u.x(), u.y(), v.spin};
+        };
+        Manifold m = find_manifold(PlacedPart(model, placed, c.part_a), PlacedPart(model, placed, c.part_b),
+                                   placed.block[b].position - placed.block[a].position, reach, narrow * thickness,
+                                   {of(a), of(b), 0.5 * dt});
+        if (m.count == 0) continue;
+        m.distance = found_[i].distance;
+        found_[i] = m;
     }
 
-    touches_.clear(), manifold_.clear(), slot_.clear(), rebound_.clear();
+    touches_.clear(), manifold_.clear(), slot_.clear(), rebound_.clear(), from_a_.clear(), end_.clear();
+    deepest_ = {};
     for (int i = 0; i < n; ++i) {
         const Manifold& m = found_[i];
-        if (m.count == 0) continue;
         const Contact& known = state.contacts.list[i];
+        if (m.distance < 0.0) {
+            const double share = -m.distance / thinner(model, known);
+            if (share > deepest_.share) deepest_ = {i, -m.distance, share};
+        }
+        if (m.count == 0) continue;
         const Joint& joint = model.joints[known.joint];
         const BlockId block_a = model.parts.block[known.part_a];
         Touch c{};
@@ -86,23 +165,16 @@ void Touches::find(const Model& model, const Placed& placed, const State& state,
         const Softness &soft_a = bodies.softness[c.a], &soft_b = bodies.softness[c.b];
         if (soft_a.x + soft_a.y + soft_a.spin + soft_b.x + soft_b.y + soft_b.spin == 0.0) continue;
         c.ends = m.count;
-        c.nx = m.normal.x(), c.ny = m.normal.y();
-        const Vec2 from_a = placed.block[block_a].position - bodies.position[c.a];
-        const Vec2 to_b = bodies.position[c.b] - bodies.position[c.a];
-        const int nearest = m.count == 2 && m.gap[1] < m.gap[0] ? 1 : 0;
-        for (int end = 0; end < m.count; ++end) {
-            const Vec2 arm = m.point[end] + from_a;
-            c.arm_a[end] = cross(arm, m.normal);
-            c.arm_b[end] = cross(arm - to_b, m.normal);
-            if (end != nearest) continue;
-            c.arm_a[2] = cross(arm, perp(m.normal));
-            c.arm_b[2] = cross(arm - to_b, perp(m.normal));
-        }
-        prepare(c, bodies.softness);
+        from_a_.push_back(placed.block[block_a].position - bodies.position[c.a]);
+        set_arms(m, from_a_.back(), bodies, {}, c);
+        end_.resize(2 * touches_.size() + 2);
         for (int end = 0; end < m.count; ++end) {
             const double u = normal_velocity(c, bodies.velocity, end), gap = m.gap[end];
             const bool closes = gap + 0.5 * dt * u <= 0.0 || gap <= fall;
-            c.least[end] = closes ? 0.0 : -2.0 * gap / dt;
+            const Vec2 bent = bend(m, bodies, from_a_.back(), c, end);
+            c.least[end] = closes ? -0.5 * dt * bent.x() : -2.0 * gap / dt;
+            if (end == nearest(m)) c.sticks = -0.5 * dt * bent.y();
+            end_[2 * touches_.size() + end] = closes ? End::meets : End::comes_near;
         }
         c.friction = known.slipped && joint.weakens ? joint.tan_friction_residual : joint.tan_friction;
         if (fits_bond(model, known)) {  // it has slipped, or nothing of it is left
@@ -136,22 +208,40 @@ void Touches::find(const Model& model, const Placed& placed, const State& state,
 
 // What closes with more than the speed of two steps of free fall hits at a time within the step. Until then all else acts on
 // the two bodies as before: a corner about which a block has turned carries weight until the next one lands, or the block
-// would lose the share of a step each time.
+// would lose the share of a step each time. The impulse acts where the two are then: with the arms of the middle of the step
+// a block that rocks would lose a share of its spin that depends on where in the step it lands.
 void Touches::find_impacts(const Bodies& bodies, std::span<const Velocity> before, double fall, double dt) {
     impact_.assign(bodies.size(), 1.0);
+    ahead_.assign(touches_.size(), 0.0);
+    landed_.assign(2 * touches_.size(), 0.0);
     bool any = false;
     for (std::size_t i = 0; i < touches_.size(); ++i) {
         Touch& c = touches_[i];
+        bool hits[2] = {};
+        double first = 1.0;  // share of the step that is over then
         for (int end = 0; end < c.ends; ++end) {
             const double gap = manifold_[i].gap[end], change = normal_velocity(c, before, end);
             const double approach = -std::min(change, normal_velocity(c, bodies.velocity, end));
-            if (c.p[end] > 0.0 || -change * dt <= 4.0 * fall || std::abs(gap) > 0.5 * dt * approach) continue;
-            const double share = std::clamp(0.5 - gap / (change * dt), 0.0, 1.0);  // of the step that is over then
-            for (const int body : {c.a, c.b}) impact_[body] = std::min(impact_[body], share);
-            any = true;
-            if (rebound_[i] == 0.0) continue;
+            hits[end] = !(c.p[end] > 0.0 || -change * dt <= 4.0 * fall || std::abs(gap) > 0.5 * dt * approach);
+            if (!hits[end]) continue;
+            // What else carries a block that does not bounce, such as the corner it rocks about, is not known here.
+            const double gained = rebound_[i] > 0.0 ? normal_velocity(c, bodies.velocity, end) - change : 0.0;
+            first = std::min(first, time_of_impact(gap - 0.5 * dt * change, change, gained / dt, dt) / dt);
+        }
+        if (!hits[0] && !hits[1]) continue;
+        any = true;
+        for (const int body : {c.a, c.b}) impact_[body] = std::min(impact_[body], first);
+        ahead_[i] = (first - 0.5) * dt;
+        set_arms(manifold_[i], from_a_[i], bodies, {ahead_[i], before[c.a], before[c.b]}, c);
+        for (int end = 0; end < c.ends && rebound_[i] > 0.0; ++end) {
+            if (!hits[end]) continue;
+            const double change = normal_velocity(c, before, end);
             const double gained = normal_velocity(c, bodies.velocity, end) - change;  // by weight and loads
-            c.least[end] = std::max(0.0, (1.0 - share) * gained - rebound_[i] * (change + share * gained));
+            const double leaves = -rebound_[i] * (change + first * gained), rest = 1.0 - first;
+            c.least[end] = std::max(0.0, rest * gained + leaves);
+            if (c.least[end] == 0.0) continue;
+            end_[2 * i + end] = End::bounces;
+            landed_[2 * i + end] = rest * dt * (leaves + 0.5 * rest * gained);
         }
     }
     for (Touch& c : touches_) {
@@ -181,8 +271,9 @@ void Touches::take_to_time_of_impact(const Bodies& bodies, std::span<const Veloc
         double later[3] = {0.0, 0.0, 0.0}, pressed = 0.0;  // N s x s
         for (int end = 0; end < c.ends; ++end) {
             const double gap = manifold_[i].gap[end], approach = -normal_velocity(c, before, end);
-            pressed += c.p[end];
-            if (std::abs(gap) > exact && std::abs(gap) <= 0.51 * dt * approach) later[end] = -gap / approach * c.p[end];
+            pressed += c.p[end] - c.earlier[end];
+            if (std::abs(gap) > exact && std::abs(gap) <= 0.51 * dt * approach)
+                later[end] = -gap / approach * (c.p[end] - c.earlier[end]);
         }
         if (later[0] == 0.0 && later[1] == 0.0) continue;
         later[2] = (c.p[2] - c.earlier[2]) * (later[0] + later[1]) / pressed;
@@ -206,12 +297,19 @@ bool Touches::correct(const Bodies& bodies, std::span<const Velocity> before, st
             const double gap = manifold_[i].gap[end];
             Want& w = want[i][end];
             w.pressed = pressed_[2 * i + end];
-            w.least = w.pressed
-                          ? -gap * (c.least[end] > 0.0 ? 1.0 + rebound_[i] : 1.0) - std::min(0.5 * dt * c.least[end], 0.0)
-                          : -(gap + 0.5 * dt * normal_velocity(c, after, end));
+            const End kind = end_[2 * i + end];
+            if (!w.pressed)
+                w.least = -(gap + 0.5 * dt * normal_velocity(c, after, end));
+            else if (kind == End::comes_near)
+                w.least = -gap - 0.5 * dt * c.least[end];
+            else if (kind == End::bounces)
+                w.least = landed_[2 * i + end] - gap - 0.5 * dt * c.least[end];
+            else
+                w.least = -gap;
             worst = std::max(worst, w.pressed ? std::abs(w.least) : w.least);
         }
     }
+    displacement.clear();
     if (worst <= exact) return false;
     displacement.assign(bodies.size(), {});
     take_to_time_of_impact(bodies, before, exact, dt, displacement);
@@ -247,10 +345,9 @@ void Touches::add_forces(const Model& model, const Placed& placed, const State& 
         const Contact& known = state.contacts.list[slot_[i]];
         const BlockId a = model.parts.block[known.part_a], b = model.parts.block[known.part_b];
         const Vec2 to_b = placed.block[b].position - placed.block[a].position;
-        const int nearest = m.count == 2 && m.gap[1] < m.gap[0] ? 1 : 0;
         for (int end = 0; end < m.count; ++end) {
             Vec2 force = c.p[end] / dt * m.normal;
-            if (end == nearest) force += c.p[2] / dt * perp(m.normal);
+            if (end == nearest(m)) force += c.p[2] / dt * perp(m.normal);
             sum[a].force -= force;
             sum[a].torque -= cross(m.point[end], force);
             sum[b].force += force;
@@ -260,7 +357,8 @@ void Touches::add_forces(const Model& model, const Placed& placed, const State& 
 }
 
 void Touches::record(const Model& model, const Placed& placed, const Bodies& bodies, std::span<const Velocity> before,
-                     std::span<const Velocity> after, double dt, double resolution, State& state) const {
+                     std::span<const Velocity> after, std::span<const Velocity> displacement, double dt, double resolution,
+                     State& state) const {
     std::vector<Contact>& list = state.contacts.list;
     std::size_t next = 0;
     const int n = static_cast<int>(list.size());
@@ -295,7 +393,11 @@ void Touches::record(const Model& model, const Placed& placed, const Bodies& bod
         c.edge_b = m->count == 2 ? m->edge_b : -1;
         c.length = m->count == 2 ? m->length : 0.0;
         c.normal = m->normal;
-        c.overlap = m->count == 2 ? -0.5 * (m->gap[0] + m->gap[1]) : -m->gap[0];
+        c.overlap = 0.0;
+        for (int end = 0; end < t->ends; ++end) {  // at the end of the step
+            const double moved = displacement.empty() ? 0.0 : normal_velocity(*t, displacement, end);
+            c.overlap -= (m->gap[end] + 0.5 * dt * normal_velocity(*t, after, end) + moved) / t->ends;
+        }
         c.normal_force = pressed / dt;
         c.shear_force = t->p[2] / dt;
         c.shear_energy = 0.0;

@@ -17,6 +17,14 @@ public:
     void find(const Model& model, const Placed& placed, const State& state, const Bodies& bodies,
               std::span<const Velocity> before, double fall, double dt);
 
+    /// The two parts that lie deepest in each other, for the size of the thinner one, of those that `find` looked at.
+    struct Deepest {
+        int slot = -1;       // in the contact list, -1 = no two
+        double depth = 0.0;  // m
+        double share = 0.0;  // of the thickness
+    };
+    const Deepest& deepest() const { return deepest_; }
+
     /// m/s, no point of any block is faster: twice the way of half a step is how far apart two may be to matter in it.
     static double fastest(const Model& model, const Motion& motion, const Bodies& bodies);
 
@@ -30,8 +38,10 @@ public:
                  double dt, std::vector<Velocity>& displacement);
 
     /// Writes forces, slip and places into the contact list; adds what friction and impacts took to the ledger.
+    /// `displacement`: what `correct` found, empty if nothing.
     void record(const Model& model, const Placed& placed, const Bodies& bodies, std::span<const Velocity> before,
-                std::span<const Velocity> after, double dt, double resolution, State& state) const;
+                std::span<const Velocity> after, std::span<const Velocity> displacement, double dt, double resolution,
+                State& state) const;
 
     /// Adds the forces of all contacts, on each block about its centroid.
     void add_forces(const Model& model, const Placed& placed, const State& state, double dt, std::span<Force> sum) const;
@@ -46,9 +56,16 @@ private:
     void take_to_time_of_impact(const Bodies& bodies, std::span<const Velocity> before, double exact, double dt,
                                 std::span<Velocity> displacement) const;
 
+    enum class End : std::uint8_t { meets, comes_near, bounces };
+
+    Deepest deepest_;
     std::vector<Touch> touches_;
     std::vector<Manifold> manifold_;     // [touches]
     std::vector<double> rebound_;        // [touches] restitution
+    std::vector<Vec2> from_a_;           // [touches] m, centroid of block a from that of its body
+    std::vector<End> end_;               // [2 touches] what becomes of it in this step
+    std::vector<double> landed_;         // [2 touches] m, gap of an end that bounces at the end of the step
+    std::vector<double> ahead_;          // [touches] s, after the middle of the step: when it hits, 0 = it does not
     std::vector<double> impact_;         // [nq] share of the step before the first impact
     std::vector<std::uint8_t> pressed_;  // [2 touches] an end that presses after the step
     std::vector<int> slot_;              // [touches] in the contact list

@@ -73,7 +73,7 @@ DeepOverlap deepest_overlap(const Model& model, const Placed& placed, const Stat
         const double here = measured ? depth(model, placed, c) : c.overlap;
         if (here <= most * thin) continue;
         most = here / thin;
-        deepest = {&c, here, thin, room_share * thin};
+        deepest = {&c, here, thin, room_share * thin, c.point};
     }
     return deepest;
 }
@@ -82,7 +82,7 @@ std::string describe(const Model& model, const DeepOverlap& overlap) {
     const Contact& c = *overlap.contact;
     return number(overlap.depth) + " m, " + number(std::round(1e4 * overlap.share()) / 100.0) + " % of the thinner part (" +
            number(overlap.thickness) + " m), between " + title(model, model.parts.block[c.part_a]) + " and " +
-           title(model, model.parts.block[c.part_b]) + " at " + place(c.point + model.origin, overlap.thickness);
+           title(model, model.parts.block[c.part_b]) + " at " + place(overlap.point + model.origin, overlap.thickness);
 }
 
 std::string remedy(const Model& model, const DeepOverlap& overlap) {
@@ -102,6 +102,16 @@ std::string no_room_left(const Model& model, const Placed& placed, const State& 
     if (!deepest.contact || deepest.depth <= deepest.room) return {};
     return "blocks lie in each other, and would pass through: overlap " + describe(model, deepest) + "; " +
            remedy(model, deepest) + "; t = " + number(state.time) + " s, step " + std::to_string(state.total_steps);
+}
+
+std::string no_room_left(const Model& model, const Placed& placed, const State& state, const Contact& c, double depth) {
+    const BlockId a = model.parts.block[c.part_a], b = model.parts.block[c.part_b];
+    const double thin = std::min(thickness(model, c.part_a), thickness(model, c.part_b));
+    const DeepOverlap overlap{&c, depth, thin, room_share * thin,
+                              placed.block[model.blocks.area[a] < model.blocks.area[b] ? a : b].position};
+    if (depth <= overlap.room) return {};
+    return "blocks lie in each other, and would pass through: overlap " + describe(model, overlap) + "; " + rigid_remedy +
+           "; t = " + number(state.time) + " s, step " + std::to_string(state.total_steps);
 }
 
 }  // namespace talus

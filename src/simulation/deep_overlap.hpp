@@ -15,6 +15,7 @@ struct DeepOverlap {
     double depth = 0.0;                // m, shortest way that would part the two, out through the boundary of a block
     double thickness = 0.0;            // m, of the thinner part
     double room = 0.0;                 // m, depth at which the two begin to pass through each other
+    Vec2 point = Vec2::Zero();         // m
     double share() const { return contact ? depth / thickness : 0.0; }
 };
 
@@ -31,6 +32,12 @@ std::string describe(const Model& model, const DeepOverlap& overlap);
 /// "a normal stiffness of at least 4e11 Pa/m of joint `j` would keep it near 1 %".
 std::string remedy(const Model& model, const DeepOverlap& overlap);
 
+/// The same where blocks do not give way at all.
+inline constexpr const char* rigid_remedy =
+    "rigid blocks do not give way: something presses them together that does not stop, such as a driven block, or the step "
+    "is "
+    "too long for what changes within it (run.time_step)";
+
 /// Whether the overlaps are to be looked at after this step: so often that two blocks at `speed` (m/s) come closer by no
 /// more than a quarter of `thinnest` (m) from look to look, and at least every 128 steps. It depends on the state alone, so
 /// that a run that was resumed looks at the same steps.
@@ -38,5 +45,8 @@ bool time_to_look(std::int64_t step, double speed, double dt, double thinnest);
 
 /// What to say if two parts have no room left; empty if all have.
 std::string no_room_left(const Model& model, const Placed& placed, const State& state);
+
+/// The same of two rigid blocks that lie in each other by `depth` (m), whether their contact carries force or not.
+std::string no_room_left(const Model& model, const Placed& placed, const State& state, const Contact& contact, double depth);
 
 }  // namespace talus

@@ -3,6 +3,7 @@
 #include "core/errors.hpp"
 #include "dynamics/motion.hpp"
 #include "rigid/scratch.hpp"
+#include "simulation/deep_overlap.hpp"
 #include "simulation/simulation.hpp"
 
 #include <algorithm>
@@ -30,6 +31,11 @@ constexpr double settled = 1e-4;
 // Contacts are looked for ahead of the motion, so nothing can pass through a part in less than the way of its whole width;
 // of that, twice as much may be used as by the explicit solver, which looks back.
 constexpr double wider = 2.0;
+
+// Of free fall within a step: where sweeps end before relative velocities are known to this, the step is counted and the run
+// warns. A tenth of it would count steps in which a tall stack is still a hundredth of its weight off where it matters to
+// nobody; ten times more is creep that can be seen within a second.
+constexpr double unsolved = 1e-3;
 
 constexpr int energy_interval = 100;
 constexpr int most_breaks = 50;  // rounds of breaking bonds within a step
@@ -64,6 +70,7 @@ void Simulation::begin_rigid() {
 
 void Simulation::forces_rigid(double) {
     rigid_ = std::make_unique<rigid::Scratch>();  // a new stage: other blocks, joints or boxes
+    rigid_->bodies = rigid::join_bonded(model_, state_);
     placed_.boxed.clear();
     renew_pairs_rigid(0.0);
 }
@@ -85,38 +92,25 @@ void Simulation::renew_pairs_rigid(double reach) {
 void Simulation::step_rigid(double dt) {
     if (!rigid_) rigid_ = std::make_unique<rigid::Scratch>();
     rigid::Scratch& r = *rigid_;
-    const Motion start = state_.motion;
+    r.start = state_.motion;
     bool unfinished = false;  // bonds broke in the last round that there is
     for (int round = 0;; ++round) {
         if (!r.bodies) {
             r.bodies = rigid::join_bonded(model_, state_);
             r.renewed = true;
         }
-        half_step_rigid(dt);
+        while (!half_step_rigid(dt)) {
+            state_.motion = r.start;
+            dt = time_step();
+        }
         const bool broke = break_bonds_rigid(dt);
         unfinished = broke && round == most_breaks;
         if (!broke || unfinished) break;
-        state_.motion = start;
+        state_.motion = r.start;
         r.bodies.reset();
     }
-    Bodies& bodies = *r.bodies;
-    const double resolution = 10.0 * rigid_resolution(dt);
-    r.touches.record(model_, placed_, bodies, r.before, bodies.velocity, dt, resolution, state_);
-    lap(Part::contacts);
-
-    const std::vector<Vec2> middle = state_.motion.position;
-    drift(bodies, dt / 2, state_.motion, bodies.velocity);
-    move_bodies(bodies, bodies.velocity, dt / 2);
-    if (r.touches.correct(bodies, r.before, bodies.velocity, std::max(settled * fall_rigid() * dt * dt, 1e-12), dt,
-                          r.displacement)) {
-        drift(bodies, 1.0, state_.motion, r.displacement);
-        move_bodies(bodies, r.displacement, 1.0);
-    }
-    state_.time += dt;
-    state_.stage_time += dt;
-    account_rigid(start, middle, dt);
-    scatter(bodies, state_.motion);
-    drive(model_, state_.stage_time, state_.motion);
+    if (!scenario_.run.unchecked) check_overlaps_rigid();
+    finish_step_rigid(dt);
     if (unfinished) r.bodies.reset();
     lap(Part::account);
     check_speed();
@@ -127,9 +121,53 @@ void Simulation::step_rigid(double dt) {
     }
 }
 
+/// From the middle of the step, where the impulses are known, to its end.
+void Simulation::finish_step_rigid(double dt) {
+    rigid::Scratch& r = *rigid_;
+    Bodies& bodies = *r.bodies;
+    const double fall = fall_rigid();
+    r.middle = state_.motion.position;
+    drift(bodies, dt / 2, state_.motion, bodies.velocity);
+    move_bodies(bodies, bodies.velocity, dt / 2);
+    if (r.touches.correct(bodies, r.before, bodies.velocity, std::max(settled * fall * dt * dt, 1e-12), dt,
+                          r.displacement)) {
+        drift(bodies, 1.0, state_.motion, r.displacement);
+        move_bodies(bodies, r.displacement, 1.0);
+    }
+    r.touches.record(model_, placed_, bodies, r.before, bodies.velocity, r.displacement, dt, 10.0 * rigid_resolution(dt),
+                     state_);
+    lap(Part::contacts);
+    state_.time += dt;
+    state_.stage_time += dt;
+    account_rigid(r.start, r.middle, dt);
+    scatter(bodies, state_.motion);
+    drive(model_, state_.stage_time, state_.motion);
+    if (r.left <= unsolved * std::max(fall * dt, 1e-3 * r.fastest)) return;
+    ++state_.unsolved.steps;
+    state_.unsolved.speed = std::max(state_.unsolved.speed, r.left);
+    state_.unsolved.way += r.left * dt;
+}
+
+// Nothing comes so far into anything within half a step: who lies deeper has been pressed there, and would come out on the
+// other side.
+void Simulation::check_overlaps_rigid() const {
+    const auto& [slot, depth, share] = rigid_->touches.deepest();
+    if (slot < 0) return;
+    const std::string trouble = no_room_left(model_, placed_, state_, state_.contacts.list[slot], depth);
+    if (!trouble.empty()) throw DivergenceError(trouble);
+}
+
+/// Whether nothing at `speed` (m/s) moves further than it may within a step; if not, steps are shorter from now on.
+bool Simulation::short_enough_rigid(double speed) {
+    const int needed = step_halvings(state_.stage_step, state_.step_halvings, speed, wider * stable_.thinnest);
+    if (needed <= state_.step_halvings) return true;
+    state_.step_halvings = needed;
+    return false;
+}
+
 /// m/s, to which relative velocities are found.
 double Simulation::rigid_resolution(double dt) const {
-    return tolerance * std::max(fall_rigid() * dt, 1e-6 * rigid_->fastest);
+    return tolerance * std::max(fall_rigid() * dt, 1e-4 * rigid_->fastest);
 }
 
 /// m/s2, largest acceleration by weight and loads.
@@ -142,12 +180,14 @@ double Simulation::fall_rigid() const {
     return fall;
 }
 
-/// To the middle of the step, and the velocities after it.
-void Simulation::half_step_rigid(double dt) {
+/// To the middle of the step, and the velocities after it; false if a block would move too far in it: steps are shorter
+/// then.
+bool Simulation::half_step_rigid(double dt) {
     rigid::Scratch& r = *rigid_;
     Bodies& bodies = *r.bodies;
     gather(model_, state_.motion, bodies);
     r.before = bodies.velocity;
+    if (!short_enough_rigid(rigid::Touches::fastest(model_, state_.motion, bodies))) return false;
     drift(bodies, dt / 2, state_.motion, r.before);
     move_bodies(bodies, r.before, dt / 2);
     state_.stage_time += dt / 2;
@@ -167,12 +207,18 @@ void Simulation::half_step_rigid(double dt) {
         v.spin += dt * soft.spin * (f.torque + cross(state_.motion.position[b] - bodies.position[q], f.force));
     }
     for (const DrivenBlock& d : model_.driven) {
-        Velocity& v = bodies.velocity[bodies.body_of[d.block]];
-        v = {state_.motion.velocity[d.block].x(), state_.motion.velocity[d.block].y(), state_.motion.spin[d.block]};
+        const int q = bodies.body_of[d.block];
+        const Velocity prescribed = rigid::seen_from(state_.motion, d.block, bodies.position[q]);
+        Velocity& v = bodies.velocity[q];
+        if (!bodies.single(q)) v = prescribed;
+        if (d.x) v.x = prescribed.x;
+        if (d.y) v.y = prescribed.y;
+        if (d.rotation) v.spin = prescribed.spin;
     }
     lap(Part::move);
 
     r.fastest = rigid::Touches::fastest(model_, state_.motion, bodies);
+    if (!short_enough_rigid(r.fastest)) return false;
     const double reach = dt * r.fastest;
     renew_pairs_rigid(reach);
     if (r.renewed) {
@@ -186,10 +232,13 @@ void Simulation::half_step_rigid(double dt) {
         apply(c, c.earlier, bodies.softness, bodies.velocity);
     }
     const bool unknown = state_.stage_time == 0.0;
-    r.solver.solve(r.touches.list(), bodies.softness, bodies.velocity,
-                   {rigid_resolution(dt), unknown ? first_sweeps : sweeps});
+    r.left = r.solver
+                 .solve(r.touches.list(), bodies.softness, bodies.velocity,
+                        {rigid_resolution(dt), unknown ? first_sweeps : sweeps})
+                 .left;
     r.touches.add_earlier();
     lap(Part::sum);
+    return short_enough_rigid(rigid::Touches::fastest(model_, state_.motion, bodies));
 }
 
 /// True if some bond broke: the step has to be done again without it.
@@ -241,6 +290,8 @@ void Simulation::account_rigid(const Motion& start, std::span<const Vec2> middle
             else
                 ledger.driven -= r.contact[b].force[axis] * moved[axis];
         }
+        if (r.bodies->driver[q] >= 0 && !model_.blocks.held(b))  // what takes it along
+            ledger.driven -= r.unbalanced[b].force.dot(moved) + r.unbalanced[b].torque * turned;
         if (model_.blocks.inv_inertia[b] != 0.0)
             ledger.loads += r.external[b].torque * turned;
         else

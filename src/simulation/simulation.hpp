@@ -108,7 +108,10 @@ private:
     void forces_rigid(double dt);
     void begin_rigid();
     void step_rigid(double dt);
-    void half_step_rigid(double dt);
+    bool half_step_rigid(double dt);
+    void finish_step_rigid(double dt);
+    bool short_enough_rigid(double speed);
+    void check_overlaps_rigid() const;
     void renew_pairs_rigid(double reach);
     bool break_bonds_rigid(double dt);
     double rigid_resolution(double dt) const;

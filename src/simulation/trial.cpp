@@ -89,11 +89,17 @@ std::vector<std::string> run_warnings(const Simulation& simulation) {
     const DeepOverlap deepest = deepest_overlap(simulation.model(), simulation.placed(), simulation.state());
     if (deepest.share() > deep)
         all.push_back("blocks lie deep in each other: overlap " + describe(simulation.model(), deepest) + "; " +
-                      remedy(simulation.model(), deepest));
+                      (simulation.stage().solver == "rigid" ? rigid_remedy : remedy(simulation.model(), deepest)));
     if (simulation.energy_gain() > energy_alarm)
         all.push_back("blocks gained energy from nowhere, " + number(simulation.energy_gain()) +
                       " of the largest energy of the run: do not trust these results; a shorter step (run.time_step, "
                       "run.step_fraction) or contact damping is the remedy");
+    if (const Unsolved& unsolved = simulation.state().unsolved; unsolved.steps > 0)
+        all.push_back("in " + std::to_string(unsolved.steps) + " of " + std::to_string(simulation.state().total_steps) +
+                      " steps the rigid solver did not find the impulses to the end: relative velocities of up to " +
+                      number(unsolved.speed) + " m/s were left, and blocks may have crept by about " + number(unsolved.way) +
+                      " m against each other; a shorter time step (run.time_step) or, for what stands, solver: static is "
+                      "the remedy");
     return all;
 }
 
