@@ -68,12 +68,6 @@ std::optional<CornerSlot> find_corners(const Model& model, const Contact& c, con
 
 }  // namespace
 
-Couple couple(const Model& model, const Placed& placed, const Contact& c) {
-    const BlockId a = model.parts.block[c.part_a], b = model.parts.block[c.part_b];
-    const Vec2 &from = placed.block[a].position, &to = placed.block[b].position;
-    return {{model, placed, c.part_a}, {model, placed, c.part_b}, a, b, to.x() - from.x(), to.y() - from.y()};
-}
-
 CornerLines corner_lines(const Placed& placed, const CornerSlot& f, double dx, double dy) {
     const PlacedCorner &a = placed.corner[f.a], &b = placed.corner[f.b];
     const Vec2 &a_before = placed.corner[f.a_before].normal, &b_before = placed.corner[f.b_before].normal;

@@ -22,7 +22,11 @@ struct Couple {
     BlockId block_a, block_b;
     double dx, dy;  // m, from the centroid of a to that of b
 };
-Couple couple(const Model& model, const Placed& placed, const Contact& contact);
+inline Couple couple(const Model& model, const Placed& placed, const Contact& c) {
+    const BlockId a = model.parts.block[c.part_a], b = model.parts.block[c.part_b];
+    const Vec2 &from = placed.block[a].position, &to = placed.block[b].position;
+    return {{model, placed, c.part_a}, {model, placed, c.part_b}, a, b, to.x() - from.x(), to.y() - from.y()};
+}
 
 CornerLines corner_lines(const Placed& placed, const CornerSlot& slot, double dx, double dy);
 
