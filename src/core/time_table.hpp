@@ -11,6 +11,8 @@ struct TimeTable {
 
     static TimeTable constant(double v) { return {{0.0}, {v}}; }
     double operator()(double t) const;
+    /// Over `span` (s) around `middle`: the exact integral over the span, divided by it; the value there for no span.
+    double mean(double middle, double span) const;
     bool is_constant() const { return time.size() < 2; }
     TimeTable frozen() const { return constant((*this)(0.0)); }  // at its value at time 0
     TimeTable at_the_end() const { return value.empty() ? *this : constant(value.back()); }

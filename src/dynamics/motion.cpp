@@ -23,12 +23,13 @@ double force_squared(const Model& model, const State& state, std::span<const For
     return sum;
 }
 
-Force load_at(const Load& l, double t, double angle) {
+Force load_of(const Load& l, const Vec2& force, double moment, double angle) {
     const auto [c, s] = turn(angle);
-    const Vec2 force(l.force_x(t), l.force_y(t));
     const Vec2 arm(c * l.arm.x() - s * l.arm.y(), s * l.arm.x() + c * l.arm.y());
-    return {force, cross(arm, force) + l.moment(t)};
+    return {force, cross(arm, force) + moment};
 }
+
+Force load_at(const Load& l, double t, double angle) { return load_of(l, {l.force_x(t), l.force_y(t)}, l.moment(t), angle); }
 
 }  // namespace
 
@@ -119,6 +120,31 @@ void weigh(const Model& model, std::span<const BlockRange> ranges, const State& 
 void add_loads(const Model& model, const State& state, std::span<Force> load) {
     for (const Load& l : model.loads) {
         const Force f = load_at(l, state.stage_time, state.motion.angle[l.block]);
+        load[l.block].force += f.force;
+        load[l.block].torque += f.torque;
+    }
+}
+
+Vec2 mean_gravity(const Model& model, double stage_time, double dt) {
+    const double middle = stage_time + 0.5 * dt;
+    return {model.gravity_x.mean(middle, dt), model.gravity_y.mean(middle, dt)};
+}
+
+void weigh_over(const Model& model, const State& state, double dt, std::span<Force> load) {
+    const int nb = model.blocks.size();
+    const double middle = state.stage_time + 0.5 * dt;
+    const Vec2 g = mean_gravity(model, state.stage_time, dt);
+    const double share = state.release.empty() ? 0.0 : release_share(model, middle);
+#pragma omp parallel for schedule(static) if (nb > 1000)
+    for (int b = 0; b < nb; ++b) {
+        load[b] = {model.blocks.mass[b] * g, 0.0};
+        if (share == 0.0) continue;
+        load[b].force += share * state.release[b].force;
+        load[b].torque += share * state.release[b].torque;
+    }
+    for (const Load& l : model.loads) {
+        const Vec2 force(l.force_x.mean(middle, dt), l.force_y.mean(middle, dt));
+        const Force f = load_of(l, force, l.moment.mean(middle, dt), state.motion.angle[l.block]);
         load[l.block].force += f.force;
         load[l.block].torque += f.torque;
     }

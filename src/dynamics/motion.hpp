@@ -33,6 +33,13 @@ void weigh(const Model& model, std::span<const BlockRange> ranges, const State& 
 /// load += loads of the scene, at state.stage_time.
 void add_loads(const Model& model, const State& state, std::span<Force> load);
 
+/// m/s2, mean gravity over the step of dt that begins at stage_time.
+Vec2 mean_gravity(const Model& model, double stage_time, double dt);
+
+/// load = the mean of both over the step of dt that begins at state.stage_time, with blocks as they are turned now. Time
+/// tables are integrated exactly: a pulse gives all of its impulse wherever in a step it ends.
+void weigh_over(const Model& model, const State& state, double dt, std::span<Force> load);
+
 /// Cundall's local damping, per degree of freedom that is free: damping = -alpha |F| sign(v), added to the load.
 void damp_locally(const Model& model, const Awake& awake, const Motion& motion, std::span<Force> load,
                   std::vector<Force>& damping);

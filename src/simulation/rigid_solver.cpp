@@ -190,12 +190,9 @@ bool Simulation::half_step_rigid(double dt) {
     if (!short_enough_rigid(rigid::Touches::fastest(model_, state_.motion, bodies))) return false;
     drift(bodies, dt / 2, state_.motion, r.before);
     move_bodies(bodies, r.before, dt / 2);
-    state_.stage_time += dt / 2;
     r.external.resize(model_.blocks.size());
-    weigh(model_, awake_.loaded, state_, r.external);
-    add_loads(model_, state_, r.external);
-    drive(model_, state_.stage_time + dt / 2, state_.motion);
-    state_.stage_time -= dt / 2;
+    weigh_over(model_, state_, dt, r.external);
+    drive(model_, state_.stage_time + dt, state_.motion);
 
     for (BlockId b = 0; b < model_.blocks.size(); ++b) {
         const int q = bodies.body_of[b];
@@ -268,8 +265,7 @@ bool Simulation::break_bonds_rigid(double dt) {
 void Simulation::account_rigid(const Motion& start, std::span<const Vec2> middle, double dt) {
     rigid::Scratch& r = *rigid_;
     Ledger& ledger = state_.ledger;
-    const double t = state_.stage_time - dt / 2;
-    const Vec2 g(model_.gravity_x(t), model_.gravity_y(t));
+    const Vec2 g = mean_gravity(model_, state_.stage_time - dt, dt);
     speed_ = 0.0;
     double fall = 0.0;  // J, that all blocks would gain in this step by falling: what nothing at rest is judged against
     for (BlockId b = 0; b < model_.blocks.size(); ++b) {

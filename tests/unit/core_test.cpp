@@ -17,6 +17,19 @@ TEST_CASE("a time table is linear between its points and constant outside them")
     CHECK(TimeTable::constant(7.0)(-1.0) == 7.0);
 }
 
+TEST_CASE("the mean of a time table is its integral over the span") {
+    const TimeTable table{{1.0, 3.0, 3.5, 6.0}, {0.0, 4.0, -2.0, -2.0}};
+    CHECK(table.mean(2.0, 0.0) == table(2.0));
+    CHECK(table.mean(2.0, 1.0) == Approx(2.0));                        // one straight line
+    CHECK(table.mean(1.0, 1.0) == Approx(0.5 * 0.5 * 1.0 / 1.0));      // a triangle of 0.5 s and 1
+    CHECK(table.mean(3.0, 10.0) == Approx((4.0 + 0.5 - 9.0) / 10.0));  // from -2 to 8: 2 x 4/2, 0.5 x (4-2)/2, 4.5 x -2
+    CHECK(TimeTable::constant(7.0).mean(3.0, 2.0) == 7.0);
+    CHECK(TimeTable{}.mean(3.0, 2.0) == 0.0);
+    double sum = 0.0;  // means of spans side by side add up to the whole
+    for (int i = 0; i < 70; ++i) sum += 0.1 * table.mean(0.05 + 0.1 * i, 0.1);
+    CHECK(sum == Approx(7.0 * table.mean(3.5, 7.0)));
+}
+
 TEST_CASE("normal numbers have mean zero and deviation one") {
     Random random(42);
     double sum = 0.0, squares = 0.0;
