@@ -1,8 +1,10 @@
 #include "dynamics/motion.hpp"
 
+#include "core/parallel.hpp"
 #include "core/turn.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 
@@ -34,21 +36,23 @@ Force load_at(const Load& l, double t, double angle) { return load_of(l, {l.forc
 }  // namespace
 
 void kick(const Model& model, const Awake& awake, std::span<const Force> load, Motion& motion, double dt) {
-#pragma omp parallel for schedule(static)
-    for (const BlockRange& range : awake.moving)
+    for_all(static_cast<int>(awake.moving.size()), 1, [&](int k) {
+        const BlockRange& range = awake.moving[k];
         for (int b = range.begin; b < range.end; ++b) {
             motion.velocity[b] += dt * load[b].force.cwiseProduct(model.blocks.inv_mass[b]);
             motion.spin[b] += dt * load[b].torque * model.blocks.inv_inertia[b];
         }
+    });
 }
 
 void drift(const Awake& awake, Motion& motion, double dt) {
-#pragma omp parallel for schedule(static)
-    for (const BlockRange& range : awake.moving)
+    for_all(static_cast<int>(awake.moving.size()), 1, [&](int k) {
+        const BlockRange& range = awake.moving[k];
         for (int b = range.begin; b < range.end; ++b) {
             motion.position[b] += dt * motion.velocity[b];
             motion.angle[b] += dt * motion.spin[b];
         }
+    });
 }
 
 void drive(const Model& model, double t, Motion& motion) {
@@ -69,10 +73,10 @@ bool place(const Model& model, const Awake& awake, const Motion& motion, double 
     const int *first_part = model.blocks.first_part.data(), *first_corner = model.parts.first_corner.data();
     PlacedCorner* corner = placed.corner.data();
     const Vec2 axis = model.box_axis;
-    bool left = all;
+    std::atomic<bool> left = all;
     constexpr int few = blocks_per_range / 4;  // their sines and cosines stay near
-#pragma omp parallel for schedule(static) reduction(|| : left)
-    for (const BlockRange& range : ranges)
+    for_all(static_cast<int>(ranges.size()), 1, [&](int k) {
+        const BlockRange& range = ranges[k];
         for (int begin = range.begin; begin < range.end; begin += few) {
             const int n = std::min(few, range.end - begin);
             double c[few], s[few];
@@ -89,14 +93,15 @@ bool place(const Model& model, const Awake& awake, const Motion& motion, double 
                 if (!all) inside &= placed.boxed[b].moved(position, motion.angle[b], axis) <= skin;
                 if (!all && model.blocks.inv_inertia[b] == 0.0 && motion.spin[b] == 0.0) continue;
                 const double cosine = c[i], sine = s[i];
-                for (int k = first_corner[first_part[b]]; k < first_corner[first_part[b + 1]]; ++k) {
-                    const Vec2 p = arm[k], m = normal[k];
-                    corner[k] = {{cosine * p.x() - sine * p.y(), sine * p.x() + cosine * p.y()},
+                for (int j = first_corner[first_part[b]]; j < first_corner[first_part[b + 1]]; ++j) {
+                    const Vec2 p = arm[j], m = normal[j];
+                    corner[j] = {{cosine * p.x() - sine * p.y(), sine * p.x() + cosine * p.y()},
                                  {cosine * m.x() - sine * m.y(), sine * m.x() + cosine * m.y()}};
                 }
             }
-            left = left || !inside;
+            if (!inside) left.store(true, std::memory_order_relaxed);
         }
+    });
     return left;
 }
 
@@ -107,14 +112,15 @@ double release_share(const Model& model, double stage_time) {
 void weigh(const Model& model, std::span<const BlockRange> ranges, const State& state, std::span<Force> load) {
     const Vec2 g(model.gravity_x(state.stage_time), model.gravity_y(state.stage_time));
     const double share = state.release.empty() ? 0.0 : release_share(model, state.stage_time);
-#pragma omp parallel for schedule(static)
-    for (const BlockRange& range : ranges)
+    for_all(static_cast<int>(ranges.size()), 1, [&](int k) {
+        const BlockRange& range = ranges[k];
         for (int b = range.begin; b < range.end; ++b) {
             load[b] = {model.blocks.mass[b] * g, 0.0};
             if (share == 0.0) continue;
             load[b].force += share * state.release[b].force;
             load[b].torque += share * state.release[b].torque;
         }
+    });
 }
 
 void add_loads(const Model& model, const State& state, std::span<Force> load) {
@@ -135,13 +141,12 @@ void weigh_over(const Model& model, const State& state, double dt, std::span<For
     const double middle = state.stage_time + 0.5 * dt;
     const Vec2 g = mean_gravity(model, state.stage_time, dt);
     const double share = state.release.empty() ? 0.0 : release_share(model, middle);
-#pragma omp parallel for schedule(static) if (nb > 1000)
-    for (int b = 0; b < nb; ++b) {
+    for_all(nb, 1000, [&](int b) {
         load[b] = {model.blocks.mass[b] * g, 0.0};
-        if (share == 0.0) continue;
+        if (share == 0.0) return;
         load[b].force += share * state.release[b].force;
         load[b].torque += share * state.release[b].torque;
-    }
+    });
     for (const Load& l : model.loads) {
         const Vec2 force(l.force_x.mean(middle, dt), l.force_y.mean(middle, dt));
         const Force f = load_of(l, force, l.moment.mean(middle, dt), state.motion.angle[l.block]);
@@ -154,8 +159,8 @@ void damp_locally(const Model& model, const Awake& awake, const Motion& motion, 
                   std::vector<Force>& damping) {
     const double alpha = model.local_damping;
     damping.resize(model.blocks.size());
-#pragma omp parallel for schedule(static)
-    for (const BlockRange& range : awake.moving)
+    for_all(static_cast<int>(awake.moving.size()), 1, [&](int k) {
+        const BlockRange& range = awake.moving[k];
         for (int b = range.begin; b < range.end; ++b) {
             const Vec2& free = model.blocks.inv_mass[b];
             const Vec2 &f = load[b].force, &v = motion.velocity[b];
@@ -166,6 +171,7 @@ void damp_locally(const Model& model, const Awake& awake, const Motion& motion, 
             load[b].force += damping[b].force;
             load[b].torque += damping[b].torque;
         }
+    });
 }
 
 double account(const Model& model, const Awake& awake, const StepEnd& before, const StepEnd& after, const State& state,
@@ -175,8 +181,7 @@ double account(const Model& model, const Awake& awake, const StepEnd& before, co
     const Motion& motion = state.motion;
     const double t0 = state.stage_time - dt, t1 = state.stage_time;
     const Vec2 g = 0.5 * Vec2(model.gravity_x(t0) + model.gravity_x(t1), model.gravity_y(t0) + model.gravity_y(t1));
-#pragma omp parallel for schedule(static)
-    for (int k = 0; k < ranges; ++k) {
+    for_all(ranges, 1, [&](int k) {
         BlockWork& w = work[k];
         for (int b = awake.moving[k].begin; b < awake.moving[k].end; ++b) {
             const Vec2 &free = model.blocks.inv_mass[b], &v = motion.velocity[b];
@@ -204,7 +209,7 @@ double account(const Model& model, const Awake& awake, const StepEnd& before, co
             if (!before.damping.empty())
                 w.damping += 0.5 * dt * (v.dot(before.damping[b].force) + spin * before.damping[b].torque);
         }
-    }
+    });
     double loads = 0.0;
     const auto add = [&](BlockId b, const Force& f) {
         if (model.blocks.inv_mass[b].x() != 0.0) loads += 0.5 * dt * motion.velocity[b].x() * f.force.x();

@@ -1,6 +1,7 @@
 #include "rigid/bodies.hpp"
 
 #include "core/errors.hpp"
+#include "core/parallel.hpp"
 #include "core/text.hpp"
 #include "core/turn.hpp"
 
@@ -9,6 +10,8 @@
 
 namespace talus::rigid {
 namespace {
+
+constexpr int few = 1000;  // bodies: one thread has done them by the time that a second one has woken
 
 class Sets {  // of blocks that belong together, each named by its smallest member
 public:
@@ -129,14 +132,13 @@ Bodies join_bonded(const Model& model, const State& state) {
 
 void gather(const Model& model, const Motion& motion, Bodies& bodies) {
     const int nq = bodies.size();
-#pragma omp parallel for schedule(static) if (nq > 1000)
-    for (int q = 0; q < nq; ++q) {
+    for_all(nq, few, [&](int q) {
         const BlockId lead = bodies.member[bodies.first[q]];
         const Vec2 start = motion.position[lead];
         if (bodies.single(q)) {
             bodies.position[q] = start;
             bodies.velocity[q] = {motion.velocity[lead].x(), motion.velocity[lead].y(), motion.spin[lead]};
-            continue;
+            return;
         }
         double mass = 0.0;
         Vec2 centre = Vec2::Zero(), momentum = Vec2::Zero();
@@ -150,7 +152,7 @@ void gather(const Model& model, const Motion& motion, Bodies& bodies) {
         bodies.position[q] = start + centre;
         if (const BlockId driver = bodies.driver[q]; driver >= 0) {
             bodies.velocity[q] = seen_from(motion, driver, bodies.position[q]);
-            continue;
+            return;
         }
         double spin = 0.0;  // from the moment of momentum: blocks that have just been joined may differ
         for (int i = bodies.first[q]; i < bodies.first[q + 1]; ++i) {
@@ -160,13 +162,12 @@ void gather(const Model& model, const Motion& motion, Bodies& bodies) {
         }
         const Softness& soft = bodies.softness[q];
         bodies.velocity[q] = {momentum.x() * soft.x, momentum.y() * soft.y, spin * soft.spin};
-    }
+    });
 }
 
 void drift(const Bodies& bodies, double dt, Motion& motion, std::span<const Velocity> velocity) {
     const int nq = bodies.size();
-#pragma omp parallel for schedule(static) if (nq > 1000)
-    for (int q = 0; q < nq; ++q) {
+    for_all(nq, few, [&](int q) {
         const Velocity& v = velocity[q];
         const Vec2 moved(v.x * dt, v.y * dt);
         const double turned = v.spin * dt;
@@ -174,7 +175,7 @@ void drift(const Bodies& bodies, double dt, Motion& motion, std::span<const Velo
             const BlockId b = bodies.member[bodies.first[q]];
             motion.position[b] += moved;
             motion.angle[b] += turned;
-            continue;
+            return;
         }
         const Turn full = turn(turned), half = turn(0.5 * turned);
         for (int i = bodies.first[q]; i < bodies.first[q + 1]; ++i) {
@@ -184,20 +185,19 @@ void drift(const Bodies& bodies, double dt, Motion& motion, std::span<const Velo
             motion.position[b] += moved + full.s * perp(arm) - 2.0 * half.s * half.s * arm;
             motion.angle[b] += turned;
         }
-    }
+    });
 }
 
 void scatter(const Bodies& bodies, Motion& motion) {
     const int nq = bodies.size();
-#pragma omp parallel for schedule(static) if (nq > 1000)
-    for (int q = 0; q < nq; ++q) {
+    for_all(nq, few, [&](int q) {
         const Velocity& v = bodies.velocity[q];
         for (int i = bodies.first[q]; i < bodies.first[q + 1]; ++i) {
             const BlockId b = bodies.member[i];
             motion.velocity[b] = Vec2(v.x, v.y) + v.spin * perp(motion.position[b] - bodies.position[q]);
             motion.spin[b] = v.spin;
         }
-    }
+    });
 }
 
 }  // namespace talus::rigid

@@ -67,6 +67,7 @@ Bonds::Bonds(const Model& model, const State& state, const Bodies& bodies) {
         const double middle = cells.first / cells.length;
         Face f{};
         f.slot = static_cast<int>(i);
+        f.face = c.face;
         f.a = unknown_[a], f.b = unknown_[b];
         f.normal = model.corners.normal[face.edge_a];
         f.arm_a = model.corners.arm[face.edge_a] + middle * perp(f.normal);
@@ -78,6 +79,13 @@ Bonds::Bonds(const Model& model, const State& state, const Bodies& bodies) {
         faces_.push_back(f);
     }
     if (unknowns_ > 0) factor();
+}
+
+void Bonds::find_slots(const State& state) {
+    std::size_t next = 0;  // faces lie in the order of the list
+    for (std::size_t i = 0; i < state.contacts.list.size() && next < faces_.size(); ++i) {
+        if (state.contacts.list[i].face == faces_[next].face) faces_[next++].slot = static_cast<int>(i);
+    }
 }
 
 void Bonds::factor() {

@@ -19,6 +19,9 @@ public:
     Bonds(const Model& model, const State& state, const Bodies& bodies);
     bool none() const { return faces_.empty(); }
 
+    /// After the contact list has been renewed, while bodies and bonds are the same.
+    void find_slots(const State& state);
+
     /// Forces for the given out-of-balance `load` [nb] of each block (weight, loads and contacts less mass x acceleration;
     /// N, N m): writes those of the bonded faces into the contact list, breaks what is beyond its strength, and returns how
     /// many faces did.
@@ -27,6 +30,7 @@ public:
 private:
     struct Face {
         int slot;           // in the contact list
+        int face;           // in Model::faces
         int a, b;           // unknowns begin at 3 a, 3 b; -1 = does not move
         Vec2 normal;        // at the start, from a to b
         Vec2 arm_a, arm_b;  // m, of the middle of the intact cells from the centroids, at the start

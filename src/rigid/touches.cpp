@@ -2,6 +2,7 @@
 
 #include "contact/contacts.hpp"
 #include "contact/separation.hpp"
+#include "core/parallel.hpp"
 #include "core/turn.hpp"
 
 #include <algorithm>
@@ -10,6 +11,8 @@
 
 namespace talus::rigid {
 namespace {
+
+constexpr int few = 1000;  // contacts: one thread has looked at them by the time that a second one has woken
 
 // Shares of the smaller thickness of two parts. Touching: what the cut of a rock leaves between neighbours by rounding is
 // 1e-12 of it. Narrow: two corners that overlap by less along the joint pass each other; larger, and blocks that slide over
@@ -116,24 +119,22 @@ void Touches::find(const Model& model, const Placed& placed, const State& state,
     if (static_cast<int>(hint_.size()) != n) hint_.assign(n, -1);
     found_.resize(n);
     speed_.resize(nb);
-#pragma omp parallel for schedule(static) if (nb > 1000)
-    for (int b = 0; b < nb; ++b) {
+    for_all(nb, few, [&](int b) {
         const int q = bodies.body_of[b];
         const Velocity& v = bodies.velocity[q];
         speed_[b] =
             velocity_at(v, placed.block[b].position - bodies.position[q]).norm() + std::abs(v.spin) * model.blocks.radius[b];
-    }
-#pragma omp parallel for schedule(static) if (n > 1000)
-    for (int i = 0; i < n; ++i) {
+    });
+    for_all(n, few, [&](int i) {
         const Contact& c = state.contacts.list[i];
         const BlockId a = model.parts.block[c.part_a], b = model.parts.block[c.part_b];
         found_[i] = {};
-        if (bodies.body_of[a] == bodies.body_of[b]) continue;
+        if (bodies.body_of[a] == bodies.body_of[b]) return;
         const double thickness = thinner(model, c);
         const double reach = 0.5 * dt * (speed_[a] + speed_[b]) + touching * thickness;
         found_[i] = find_manifold(PlacedPart(model, placed, c.part_a), PlacedPart(model, placed, c.part_b),
                                   placed.block[b].position - placed.block[a].position, reach, narrow * thickness, hint_[i]);
-        if (found_[i].distance >= -came_in * thickness) continue;
+        if (found_[i].distance >= -came_in * thickness) return;
         const auto of = [&](BlockId block) {
             const Velocity& v = before[bodies.body_of[block]];
             const Vec2 u = velocity_at(v, placed.block[block].position - bodies.position[bodies.body_of[block]]);
@@ -142,10 +143,10 @@ void Touches::find(const Model& model, const Placed& placed, const State& state,
         Manifold m = find_manifold(PlacedPart(model, placed, c.part_a), PlacedPart(model, placed, c.part_b),
                                    placed.block[b].position - placed.block[a].position, reach, narrow * thickness,
                                    {of(a), of(b), 0.5 * dt});
-        if (m.count == 0) continue;
+        if (m.count == 0) return;
         m.distance = found_[i].distance;
         found_[i] = m;
-    }
+    });
 
     touches_.clear(), manifold_.clear(), slot_.clear(), rebound_.clear(), from_a_.clear(), end_.clear();
     deepest_ = {};

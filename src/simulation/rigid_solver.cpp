@@ -97,6 +97,7 @@ void Simulation::step_rigid(double dt) {
     for (int round = 0;; ++round) {
         if (!r.bodies) {
             r.bodies = rigid::join_bonded(model_, state_);
+            r.bonds.reset();
             r.renewed = true;
         }
         while (!half_step_rigid(dt)) {
@@ -220,7 +221,10 @@ bool Simulation::half_step_rigid(double dt) {
     renew_pairs_rigid(reach);
     if (r.renewed) {
         r.touches.forget_hints();
-        r.bonds.emplace(model_, state_, bodies);
+        if (r.bonds)
+            r.bonds->find_slots(state_);
+        else
+            r.bonds.emplace(model_, state_, bodies);
         r.renewed = false;
     }
     r.touches.find(model_, placed_, state_, bodies, r.before, 0.5 * fall_rigid() * dt * dt, dt);
