@@ -221,6 +221,14 @@ CoarseBox BoxGroups::reach(int group) const {
     return all;
 }
 
+bool BoxGroups::near(int group, const CoarseBox& b) const {
+    const Limits& of = limits[group];
+    int count = 0;
+    for (int k = 0; k < width; ++k)
+        count += (b.xmin <= of.xmax[k]) & (of.xmin[k] <= b.xmax) & (b.ymin <= of.ymax[k]) & (of.ymin[k] <= b.ymax);
+    return count > 0;
+}
+
 void BoxGroups::vacate(int place) {
     constexpr float none = std::numeric_limits<float>::quiet_NaN();
     box[place] = -1;

@@ -35,7 +35,8 @@ struct BoxGroups {
     void resize(int groups);                                      // nobody is at places that are new
     void enclose(int place, const CoarseBox& limits);
     CoarseBox coarse_box(int place) const;
-    CoarseBox reach(int group) const;  // around all of a group
+    CoarseBox reach(int group) const;                  // around all of a group
+    bool near(int group, const CoarseBox& box) const;  // whether the coarse box of one of a group overlaps it
     void vacate(int place);
     void add_rows(int group, unsigned lanes, int other);
 };
