@@ -4,6 +4,7 @@
 #include "contact/face_path.hpp"
 #include "contact/idle.hpp"
 #include "contact/joint_memory.hpp"
+#include "core/parallel.hpp"
 #include "model/part_boxes.hpp"
 #include "model/supports.hpp"
 
@@ -214,9 +215,8 @@ void sort_contacts_again(const Model& model, const Contacts& contacts, BlockId b
 
 void sum_contacts(std::span<const BlockRange> ranges, const Contacts& contacts, const ContactIndex& index,
                   std::span<Force> load) {
-#pragma omp parallel for schedule(static)
-    for (const BlockRange& range : ranges)
-        for (int b = range.begin; b < range.end; ++b) {
+    for_all(static_cast<int>(ranges.size()), 1, [&](int k) {
+        for (int b = ranges[k].begin; b < ranges[k].end; ++b) {
             double fx = 0.0, fy = 0.0, torque = 0.0;
             for (int e = index.first_b[b]; e < index.first_b[b + 1]; ++e) {
                 const Reaction& r = contacts.reaction[index.slot_b[e]];
@@ -233,6 +233,7 @@ void sum_contacts(std::span<const BlockRange> ranges, const Contacts& contacts, 
             load[b].force += Vec2(fx, fy);
             load[b].torque += torque;
         }
+    });
 }
 
 StrainEnergy strain_energy(const Model& model, const Placed& placed, const State& state) {

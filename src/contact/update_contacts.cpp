@@ -314,8 +314,8 @@ private:
     const ContactIndex& index_;
     const Kernels kernels_;
     const bool convex_ = model_.parts.size() == model_.blocks.size();  // no block has an edge inside it
-    FaceBatch faces_{};
-    CornerBatch corners_{};
+    FaceBatch faces_;  // to clear them would cost a scene of a few blocks a tenth of its step
+    CornerBatch corners_;
     int joint_of_face_[ContactBatch::size], joint_of_corner_[ContactBatch::size];
     SingleContacts single_;
     std::vector<int>* changed_ = nullptr;  // of this chunk
@@ -327,11 +327,15 @@ void update_contacts(const Model& model, const Placed& placed, double dt, State&
     static const Kernels kernels{face_kernel(best_vector_unit()), corner_kernel(best_vector_unit())};
     const int chunks = static_cast<int>(index.chunks.size());
     std::vector<ContactWork> work(chunks);
+    if (chunks == 1) {  // see core/parallel.hpp
+        Evaluator(model, placed, dt, state, index, kernels)(index.chunks[0], work[0]);
+    } else {
 #pragma omp parallel
-    {
-        Evaluator evaluate(model, placed, dt, state, index, kernels);
+        {
+            Evaluator evaluate(model, placed, dt, state, index, kernels);
 #pragma omp for schedule(dynamic)
-        for (int k = 0; k < chunks; ++k) evaluate(index.chunks[k], work[k]);
+            for (int k = 0; k < chunks; ++k) evaluate(index.chunks[k], work[k]);
+        }
     }
     for (const ContactWork& w : work) {
         state.ledger.friction += w.friction;
