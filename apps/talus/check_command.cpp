@@ -1,4 +1,5 @@
 #include "commands.hpp"
+#include "cost.hpp"
 #include "summary.hpp"
 
 #include "core/memory.hpp"
@@ -19,8 +20,6 @@
 namespace talus::cli {
 namespace {
 
-constexpr int warm_up_steps = 10;   // while memory is got and the first contacts are found
-constexpr double trial_time = 0.5;  // s; shorter and what else the machine does shows, longer and the user waits
 constexpr std::size_t slivers_shown = 5;
 
 void print_blocks(const Simulation& simulation) {
@@ -116,61 +115,37 @@ void print_settlement(const Simulation& simulation) {
                 closure > 1e-2 * size ? "; stiffer joints would be nearer to rock" : "");
 }
 
-// s, the median: other work on the machine makes single steps slower, none faster.
-double time_of_a_step(Simulation& simulation) {
-    std::vector<double> seconds;
-    const Stopwatch clock;
-    for (int i = 0; clock.seconds() < trial_time && !simulation.stage_over(); ++i) {
-        const Stopwatch step;
-        simulation.step();
-        if (i >= warm_up_steps || seconds.empty()) seconds.push_back(step.seconds());
-    }
-    if (seconds.empty()) return 0.0;
-    const auto middle = seconds.begin() + static_cast<std::ptrdiff_t>(seconds.size() / 2);
-    std::nth_element(seconds.begin(), middle, seconds.end());
-    return *middle;
+void print_decisions(const Simulation& simulation) {
+    const std::optional<AccuracySpec>& accuracy = simulation.scenario().run.accuracy;
+    if (!accuracy) return;
+    std::printf("accuracy       %s; what it decides:\n", in_words(*accuracy).c_str());
+    for (const Decision& c : simulation.decisions().choices)
+        std::printf("  %-12s %s: %s\n", c.what.c_str(), c.value.c_str(), c.why.c_str());
 }
 
-std::string duration(double seconds) {
-    const auto [size, unit] = seconds < 120.0    ? std::pair(1.0, "s")
-                              : seconds < 7200.0 ? std::pair(60.0, "min")
-                                                 : std::pair(3600.0, "h");
-    char text[32];
-    std::snprintf(text, sizeof text, "%.2g %s", seconds / size, unit);
-    return text;
-}
-
-void print_cost(Simulation& simulation) {
-    if (simulation.timeless()) {
-        std::printf("cost           static: no time step; about %.2g ms per iteration, mostly some hundred of them\n",
-                    1e3 * time_of_a_step(simulation));
-        return;
-    }
+void print_step(const Simulation& simulation) {
+    if (simulation.timeless()) return;
     const StableStep stable = simulation.stable();
-    const Model& model = simulation.model();
-    const double dt = simulation.state().stage_step;
+    std::printf("time step      %s", number(simulation.state().stage_step, "s").c_str());
+    if (simulation.stage().solver == "explicit") {
+        std::printf(": rigorous bound %s, limit estimated at %s\n", number(stable.bound, "s").c_str(),
+                    number(stable.estimate, "s").c_str());
+        if (stable.block >= 0)
+            std::printf("               governed by %s, %s\n", block_and_place(simulation.model(), stable.block).c_str(),
+                        number(simulation.model().blocks.area[stable.block], "m2").c_str());
+    } else {
+        std::printf(", shorter while blocks move fast\n");
+    }
+}
+
+Cost print_cost(Simulation& simulation) {
     const int stages = simulation.stage_count();
-    std::printf("time step      %s: rigorous bound %s, limit estimated at %s\n", number(dt, "s").c_str(),
-                number(stable.bound, "s").c_str(), number(stable.estimate, "s").c_str());
-    if (stable.block >= 0) {
-        std::printf("               governed by %s, %s\n", block_and_place(model, stable.block).c_str(),
-                    number(model.blocks.area[stable.block], "m2").c_str());
-    }
-    const double per_step = time_of_a_step(simulation);
-    double length = 0.0;
-    bool may_end_before = false, has_no_end = false;  // a stage in equilibrium
-    const Scenario& scenario = simulation.scenario();
-    std::vector<Until> untils;
-    for (const StageSpec& stage : scenario.stages) untils.push_back(stage.until);
-    untils.push_back(scenario.run.until);
-    for (const Until& until : untils) {
-        length += until.time.value_or(0.0);
-        may_end_before = may_end_before || (until.equilibrium && until.time);
-        has_no_end = has_no_end || !until.time;
-    }
-    const char* bound = has_no_end ? "at least " : may_end_before ? "at most " : "";
-    std::printf("cost           %d stage%s, %s%.2g steps, about %.2g ms per step as it begins: %sabout %s in all\n", stages,
-                stages == 1 ? "" : "s", bound, length / dt, 1e3 * per_step, bound, duration(length / dt * per_step).c_str());
+    const bool timeless = simulation.timeless();
+    const Cost cost = predict_cost(simulation);
+    std::printf("cost           %d stage%s, %s%.2g %s of about %.2g ms as it begins: %sabout %s in all\n", stages,
+                stages == 1 ? "" : "s", cost.bound, cost.steps, timeless ? "iterations" : "steps", 1e3 * cost.per_step,
+                cost.bound, duration(cost.seconds).c_str());
+    return cost;
 }
 
 void print_memory(const Simulation& simulation) {
@@ -226,7 +201,11 @@ int check_command(const CheckArguments& arguments) {
     print_joints(simulation);
     print_settlement(simulation);
     std::printf("solver         %s%s\n", simulation.stage().solver.c_str(), fit_for(simulation.stage().solver));
-    print_cost(simulation);
+    print_decisions(simulation);
+    print_step(simulation);
+    const Cost cost = print_cost(simulation);
+    if (const std::string text = scenario.run.accuracy ? "" : advice(scenario, simulation, cost); !text.empty())
+        std::printf("advice         %s\n", text.c_str());
     print_memory(simulation);
     for (const std::string& warning : simulation.report().warnings) std::printf("warning: %s\n", warning.c_str());
     return ok;

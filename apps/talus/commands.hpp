@@ -15,7 +15,7 @@ enum ExitCode { ok = 0, not_met = 1, bad_input = 2, diverged = 3, output_failed 
 struct RunArguments {
     std::string scenario, output, case_name;
     std::vector<std::string> overrides;
-    bool force = false;
+    bool force = false, estimate_error = false;
 };
 int run_command(const RunArguments& arguments);
 int resume_command(const std::string& results, int threads);

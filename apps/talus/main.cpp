@@ -24,7 +24,7 @@ void add_overrides(CLI::App& command, std::vector<std::string>& overrides) {
             option, [&overrides, key](const std::string& value) { overrides.push_back(std::string(key) + "=" + value); },
             help);
     };
-    shorthand("--solver", "run.solver", "auto, explicit or rigid");
+    shorthand("--solver", "run.solver", "auto, explicit, rigid or static");
     shorthand("--search", "run.search", "how neighbours are found; never changes a result");
     shorthand("--threads", "run.threads", "never changes a result");
     shorthand("--until", "run.until.time", "s, length of the run");
@@ -84,6 +84,8 @@ int program(int argc, char** argv) {
     run_app->add_option("-o,--output", run.output, "result file; default: the name of the scenario with .h5, here");
     run_app->add_option("--case", run.case_name, "run this row of `cases`");
     run_app->add_flag("--force", run.force, "replace an existing result instead of choosing a numbered name");
+    run_app->add_flag("--estimate-error", run.estimate_error,
+                      "run again with shorter steps, and tell what the results may be wrong by");
     add_overrides(*run_app, run.overrides);
     run_app->callback([&] { command = [&] { return run_command(run); }; });
 

@@ -90,21 +90,23 @@ void print_scene(const Simulation& simulation) {
     }();
     std::printf("%s\n%d blocks (%d held), %d convex parts, solver %s, search %s, %d thread%s\n",
                 simulation.scenario().title.c_str(), model.blocks.size(), held, model.parts.size(),
-                simulation.stage().solver.c_str(),
-                simulation.scenario().run.search.c_str(), simulation.scenario().run.threads,
-                simulation.scenario().run.threads == 1 ? "" : "s");
+                simulation.stage().solver.c_str(), simulation.scenario().run.search.c_str(),
+                simulation.scenario().run.threads, simulation.scenario().run.threads == 1 ? "" : "s");
     for (const std::string& warning : simulation.report().warnings) std::printf("warning: %s\n", warning.c_str());
 }
 
 // Runs what is set up and closes the files, however it ends. What was written stays readable in every case.
-int carry_out(Simulation& simulation, Recorder& recorder, Watch* watch, Entry entry) {
+// `watch`: of so many expectations and, after them, of what the error is to be estimated.
+int carry_out(Simulation& simulation, Recorder& recorder, Watch* watch, std::size_t expectations, Entry entry) {
     Progress progress;
     Stopwatch clock;
     RunOptions options;
     options.recorder = &recorder;
     options.watch = watch;
     options.entry = entry;
+    std::vector<double> steps;  // s, of each stage
     options.stage_begun = [&](const Simulation& s) {
+        steps.push_back(s.state().stage_step);
         progress.stage_begun(s);
         print_stage(s);
         std::fflush(stdout);
@@ -147,7 +149,14 @@ int carry_out(Simulation& simulation, Recorder& recorder, Watch* watch, Entry en
         return interrupted;
     }
     int failed = 0;
-    if (watch) failed = print_verdicts(watch->judge(), "  ");
+    if (watch) {
+        const std::vector<Verdict> verdicts = watch->judge();
+        const auto end = verdicts.begin() + static_cast<std::ptrdiff_t>(expectations);
+        failed = print_verdicts({verdicts.begin(), end}, "  ");
+        if (end != verdicts.end())
+            print_error_estimate(estimate_error(simulation, steps, {end, verdicts.end()}),
+                                 simulation.scenario().run.accuracy);
+    }
     std::printf("%s", unsettled.c_str());
     return failed > 0 || outcome == Outcome::no_equilibrium ? not_met : ok;
 }
@@ -167,9 +176,12 @@ int run_command(const RunArguments& arguments) {
     check_probes(simulation);
     Recorder recorder(output, simulation, note(arguments));
     std::unique_ptr<Watch> watch;
-    const std::vector<ExpectSpec> expects = judged_alone(scenario.expect);
-    if (!expects.empty()) watch = std::make_unique<Watch>(expects, simulation.model(), simulation.first_state());
-    return carry_out(simulation, recorder, watch.get(), Entry::begun);
+    std::vector<ExpectSpec> watched = judged_alone(scenario.expect);
+    const std::size_t expectations = watched.size();
+    if (arguments.estimate_error)
+        for (ExpectSpec& expect : watched_for_error(scenario)) watched.push_back(std::move(expect));
+    if (!watched.empty()) watch = std::make_unique<Watch>(watched, simulation.model(), simulation.first_state());
+    return carry_out(simulation, recorder, watch.get(), expectations, Entry::begun);
 }
 
 int resume_command(const std::string& results, int threads) {
@@ -189,7 +201,7 @@ int resume_command(const std::string& results, int threads) {
     std::printf("going on from t = %s, frame %lld\n", number(simulation.state().time, "s").c_str(),
                 static_cast<long long>(recorder.frames()));
     if (!scenario.expect.empty()) std::printf("note: expectations need the whole run and are not judged after a resume\n");
-    return carry_out(simulation, recorder, nullptr, Entry::resumed);
+    return carry_out(simulation, recorder, nullptr, 0, Entry::resumed);
 }
 
 }  // namespace talus::cli

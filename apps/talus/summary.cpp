@@ -105,6 +105,13 @@ void print_timing(const Simulation& simulation, double wall_time) {
                 memory.peak / 1e6);
 }
 
+void print_decisions(const Simulation& simulation) {
+    if (!simulation.scenario().run.accuracy) return;
+    std::printf("  accuracy       %s", in_words(*simulation.scenario().run.accuracy).c_str());
+    for (const Decision& c : simulation.decisions().choices) std::printf("; %s %s", c.what.c_str(), c.value.c_str());
+    std::printf("\n");
+}
+
 void print_static_stages(const Simulation& simulation) {
     const Statics& statics = simulation.state().statics;
     std::size_t newton = 0;
@@ -139,6 +146,13 @@ std::string block_and_place(const Model& model, BlockId b) {
            place(model.blocks.start[b] + model.origin, std::sqrt(model.blocks.area[b]));
 }
 
+std::string in_words(const AccuracySpec& accuracy) {
+    std::string text;
+    if (accuracy.motion) text = number(*accuracy.motion) + " of the motion";
+    if (accuracy.joint_stress) text += (text.empty() ? "" : ", ") + number(*accuracy.joint_stress) + " of joint stress";
+    return text;
+}
+
 void print_stage(const Simulation& simulation) {
     if (simulation.timeless()) {
         std::printf("%s: static, until the unbalanced ratio is below %s\n", simulation.stage().name.c_str(),
@@ -169,7 +183,15 @@ void print_summary(const Simulation& simulation, double wall_time) {
     if (simulation.state().step_halvings > 0)
         std::printf("  note: the step is halved %d times now, because blocks move fast against the thinnest one\n",
                     simulation.state().step_halvings);
+    print_decisions(simulation);
     print_timing(simulation, wall_time);
+}
+
+void print_error_estimate(const ErrorEstimate& estimate, const std::optional<AccuracySpec>& accuracy) {
+    std::printf("error, estimated from a run %s:\n", estimate.how.c_str());
+    for (const ErrorOf& e : estimate.of)
+        std::printf("  %-52s %-14.7g finer %-14.7g error about %.2g\n", e.what.c_str(), e.value, e.finer, e.error);
+    if (accuracy) std::printf("  accuracy asked for: %s\n", in_words(*accuracy).c_str());
 }
 
 int print_verdicts(const std::vector<Verdict>& verdicts, const std::string& indent) {

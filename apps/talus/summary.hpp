@@ -1,6 +1,7 @@
 // What a person wants to know when a run is over.
 #pragma once
 
+#include "simulation/error_estimate.hpp"
 #include "simulation/expect.hpp"
 #include "simulation/simulation.hpp"
 
@@ -15,8 +16,12 @@ std::string number(double value, const char* unit = "");
 /// "block 7 'key' at (x, y)", with as many digits as it takes to find the block, on a map too.
 std::string block_and_place(const Model& model, BlockId block);
 
+/// "0.001 of the motion".
+std::string in_words(const AccuracySpec& accuracy);
+
 void print_stage(const Simulation& simulation);
 void print_summary(const Simulation& simulation, double wall_time);
+void print_error_estimate(const ErrorEstimate& estimate, const std::optional<AccuracySpec>& accuracy);
 /// One line each; returns how many failed.
 int print_verdicts(const std::vector<Verdict>& verdicts, const std::string& indent);
 

@@ -37,8 +37,8 @@ public:
         if (!file_.is_open()) return;
         for (const Verdict& v : trial.verdicts)
             file_ << quoted(std::filesystem::path(file).stem().string()) << ',' << quoted(row.scenario.title) << ','
-                  << quoted(row.name) << ',' << quoted(method(row.scenario, trial)) << ',' << quoted(v.what) << ',' << v.measured
-                  << ',' << v.asked << ',' << v.expected << ',' << v.allowed << ',' << v.passed << ','
+                  << quoted(row.name) << ',' << quoted(method(row.scenario, trial)) << ',' << quoted(v.what) << ','
+                  << v.measured << ',' << v.asked << ',' << v.expected << ',' << v.allowed << ',' << v.passed << ','
                   << quoted(trial.trouble) << ',' << seconds << '\n';
         file_.flush();
     }

@@ -1,21 +1,17 @@
 // What a scenario states and the solver that it names cannot represent.
 #include "scenario/convert.hpp"
+#include "scenario/springs.hpp"
 
 namespace talus {
 namespace {
 
 const std::string rigid = "rigid";
 
-// Blocks that never give way store nothing in their joints, and have no limit of stability.
-bool needs_springs(const std::string& quantity, const std::string& component) {
-    return quantity == "stable_step" || (quantity == "energy" && component.starts_with("strain"));
-}
-
 void check_observed(const Cursor& at, const std::string& component) {
     std::vector<Cursor> named = at["quantities"].items();
     named.push_back(at["quantity"]);
     for (const Cursor& quantity : named)
-        if (needs_springs(quantity.text(), component))
+        if (exists_with_springs_only(quantity.text(), component))
             quantity.fault(quantity.text() + (component.empty() ? "" : "." + component) +
                            " belongs to joints with stiffness, of which the rigid solver knows nothing; it needs "
                            "run.solver: explicit");
@@ -38,11 +34,19 @@ void check_damping(const Cursor& stage, bool settles) {
     if (contact.number() > 0.0) contact.fault("contact damping acts beside springs" + why);
 }
 
-void check_joints(const Cursor& joints, bool any_rigid, bool all_rigid) {
+void check_accuracy(const Cursor& stress) {
+    if (stress.given())
+        stress.fault(
+            "the rigid solver finds one of the states that are in balance, not what joints with a stiffness carry; it needs "
+            "solver: explicit or static, or auto");
+}
+
+// `may_be_rigid`: a solver is still to be chosen.
+void check_joints(const Cursor& joints, bool any_rigid, bool all_rigid, bool may_be_rigid) {
     for (const auto& [name, joint] : joints.names()) {
         if (any_rigid && joint["dilation_angle_deg"].number() > 0.0)
             joint["dilation_angle_deg"].fault("the rigid solver has no dilation; solver: explicit has it");
-        if (!all_rigid && joint["restitution"].number() > 0.0)
+        if (!all_rigid && !may_be_rigid && joint["restitution"].number() > 0.0)
             joint["restitution"].fault(
                 "only the rigid solver has it (run.solver: rigid); with joint stiffness blocks "
                 "rebound by themselves, and damping.contact takes energy");
@@ -52,7 +56,7 @@ void check_joints(const Cursor& joints, bool any_rigid, bool all_rigid) {
 }  // namespace
 
 void check_solvers(const Scenario& scenario, const Cursor& at) {
-    const bool last = scenario.run.solver == rigid;
+    const bool last = scenario.run.solver == rigid, open = scenario.run.accuracy && scenario.run.solver == "auto";
     bool any = last, all = last;
     const std::vector<Cursor> stages = at["stages"].items();
     for (std::size_t i = 0; i < stages.size() && i < scenario.stages.size(); ++i) {
@@ -61,11 +65,12 @@ void check_solvers(const Scenario& scenario, const Cursor& at) {
         all &= mine;
         if (!mine) continue;
         check_damping(stages[i], scenario.stages[i].settle);
-        check_joints(stages[i]["change"]["joints"], true, true);
+        check_joints(stages[i]["change"]["joints"], true, true, false);
     }
     if (last) check_damping(at["run"], false);
-    check_joints(at["joints"], any, all);
+    check_joints(at["joints"], any, all, open);
     if (!last) return;
+    check_accuracy(at["run"]["accuracy"]["joint_stress"]);
     for (const Cursor& history : at["record"]["history"].items()) check_observed(history, history["component"].text());
     for (const Cursor& expect : at["expect"].items()) {
         check_observed(expect, expect["component"].text());

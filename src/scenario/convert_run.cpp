@@ -70,6 +70,11 @@ StageSpec convert_stage(const Cursor& at, const std::string& solver_of_run, Valu
     return stage;
 }
 
+AccuracySpec convert_accuracy(const Cursor& at) {
+    const bool plain = at.is(Value::Kind::number);
+    return {plain ? at.maybe_number() : at["motion"].maybe_number(), at["joint_stress"].maybe_number(), at.where()};
+}
+
 }  // namespace
 
 std::vector<StageSpec> convert_stages(const Cursor& scenario) {
@@ -86,14 +91,17 @@ std::vector<StageSpec> convert_stages(const Cursor& scenario) {
 
 RunSpec convert_run(const Cursor& at) {
     RunSpec run;
+    if (at["accuracy"].given()) run.accuracy = convert_accuracy(at["accuracy"]);
     run.solver = at["solver"].text();
     run.until = convert_until(at, run.solver);
     run.time_step = at["time_step"].maybe_number();
     run.time_step_where = at["time_step"].where();
-    run.step_fraction = at["step_fraction"].number();
+    run.step_fraction_given = at["step_fraction"].given();
+    if (run.step_fraction_given) run.step_fraction = at["step_fraction"].number();
     run.unchecked = at["unchecked"].yes();
     run.damping = convert_damping(at["damping"]);
     run.freeze = at["freeze"].maybe_number();
+    run.freeze_given = at["freeze"].given();
     run.search = at["search"].text();
     run.skin = at["skin"].maybe_number();
     run.face_path = at["face_path"].yes();

@@ -68,6 +68,13 @@ void fill_settling(Value& stage) {
 
 }  // namespace
 
+void fill_fixed_defaults(Value& scenario) {
+    Value* run = scenario.is(Value::Kind::map) ? table_at(scenario, "run") : nullptr;
+    if (!run || run->find("accuracy")) return;
+    fill(run, "step_fraction", Value::of_number(0.8));
+    fill(run, "freeze", Value::of_text("never"));
+}
+
 void fill_derived_defaults(Value& scenario) {
     if (!scenario.is(Value::Kind::map)) return;
     if (const std::string joint = only_name(scenario, "joints"); !joint.empty())

@@ -9,4 +9,7 @@ namespace talus {
 /// settling stages, trace lengths. What has a wrong form is left for the check to refuse.
 void fill_derived_defaults(Value& scenario);
 
+/// What is fixed unless the scenario has an accuracy, which decides it then. After the rows of `cases`, which may have one.
+void fill_fixed_defaults(Value& scenario);
+
 }  // namespace talus

@@ -121,7 +121,10 @@ void check_end(const Scenario& scenario, const Value& checked, const std::string
 /// One scenario from the tree as it was read.
 Scenario make_scenario(const Input& input, Value tree, std::vector<Fault>& faults) {
     fill_derived_defaults(tree);
-    Value checked = check(tree, spec::scenario(), "", input.file, faults);
+    fill_fixed_defaults(tree);
+    const Value* run = tree.find("run");
+    const spec::Shape& shape = run && run->find("accuracy") ? spec::scenario() : spec::scenario_without_accuracy();
+    Value checked = check(tree, shape, "", input.file, faults);
     if (!checked.is(Value::Kind::map)) return {};
     checked.erase("cases");
     Scenario scenario = convert_with_origin(input, checked, faults);

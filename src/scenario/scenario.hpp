@@ -7,6 +7,7 @@
 #include "core/time_table.hpp"
 #include "core/types.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -31,7 +32,7 @@ struct ResidualSpec {                             // strength after the first sl
 
 struct JointSpec {
     std::string name;
-    double normal_stiffness = 0.0, shear_stiffness = 0.0;        // Pa/m
+    double normal_stiffness = 0.0, shear_stiffness = 0.0;        // Pa/m; 0: left to the accuracy
     double friction_angle = 0.0, cohesion = 0.0, tension = 0.0;  // rad, Pa, Pa
     double dilation_angle = 0.0;                                 // rad
     std::optional<double> dilation_cutoff_slip;                  // m, no dilation beyond this slip
@@ -183,13 +184,24 @@ struct Until {
     std::optional<int> iterations;      // of a static stage at most
 };
 
+/// The error that a run may have. What the scenario leaves open is chosen for it, see simulation/plan.hpp.
+struct AccuracySpec {
+    std::optional<double> motion;        // share of the motion of blocks whose joints do not give
+    std::optional<double> joint_stress;  // share of what joints of the stiffness given carry and close
+    Where where;
+    double least() const { return std::min(motion.value_or(1.0), joint_stress.value_or(1.0)); }
+};
+
 struct RunSpec {
     Until until;
-    std::string solver = "auto";      // auto | explicit
+    std::optional<AccuracySpec> accuracy;
+    std::string solver = "auto";      // auto | explicit | rigid | static
     std::optional<double> time_step;  // s; absent: auto
     Where time_step_where;
-    double step_fraction = 0.8;  // of the rigorous bound, when automatic
-    bool unchecked = false;      // accept a time step above the stable estimate, and blocks that pass through each other
+    double step_fraction = 0.8;                            // of the rigorous bound, when automatic
+    bool step_fraction_given = true, freeze_given = true;  // false: left to the accuracy
+    std::optional<double> most_travel;  // m, of any point in a step of the rigid solver; no key, comes from the accuracy
+    bool unchecked = false;  // accept a time step above the stable estimate, and blocks that pass through each other
     DampingSpec damping;
     std::optional<double> freeze;  // share of its weight below which a block at rest is frozen; absent: never
     std::string search = "auto";

@@ -70,7 +70,7 @@ const std::string joint_meaning =
 
 // A stage that changes a joint gives some keys only: there nothing is required and nothing filled in.
 Shape joint_keys(const std::string& title, const std::string& meaning, bool change) {
-    const auto must = change ? optional : required;
+    const auto must = change ? optional : derived("by `run.accuracy`; without one it must be given");
     const auto zero = change ? optional : fallback("0");
     const Shape residual = table(
         change ? "residual change" : "residual",
@@ -182,6 +182,17 @@ Shape joint_change() { return joint_keys("joint change", "Keys of a joint that g
 
 const Shape& scenario() {
     static const Shape all = whole();
+    return all;
+}
+
+const Shape& scenario_without_accuracy() {
+    static const Shape all = [] {
+        Shape strict = whole();
+        for (Key& key : strict.keys)
+            for (Key& of_joint : key.name == "joints" ? key.shape.of.front().keys : key.shape.keys)
+                if (of_joint.name.ends_with("_stiffness")) of_joint.presence = required;
+        return strict;
+    }();
     return all;
 }
 

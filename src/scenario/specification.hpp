@@ -6,7 +6,10 @@
 
 namespace talus::spec {
 
+/// With a `run.accuracy`, which decides what joints do not say of their stiffness.
 const Shape& scenario();
+/// The stiffness of joints must be given.
+const Shape& scenario_without_accuracy();
 
 // Parts of it, one function per section of the file.
 Shape point();

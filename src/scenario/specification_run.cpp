@@ -28,6 +28,19 @@ Shape time_step() { return either({choice({"auto"}), number("s", positive)}); }
 
 Shape solver() { return choice({"auto", "explicit", "rigid", "static"}); }
 
+Shape accuracy() {
+    const Shape share = number("1", {0.0, 0.5, true, true});
+    return either({share, table("accuracy",
+                                "The error that is accepted. Talus chooses what the scenario leaves open, and `talus check` "
+                                "says what and why. A number is the `motion`.",
+                                {{"motion", share, optional,
+                                  "of the motion of blocks whose joints do not give, or of the size of a block where blocks "
+                                  "hardly move; what joints close counts as error"},
+                                 {"joint_stress", share, optional,
+                                  "of what joints of the stiffness given carry; what they close is part of the answer"}},
+                                {{Rule::Count::at_least_one, {"motion", "joint_stress"}}})});
+}
+
 Shape change() {
     return table("change", "New values that hold from the start of the stage to the end of the run.",
                  {{"joints", names_of(joint_change()), fallback("{}"), "joints by name, with the keys that change"}});
@@ -98,13 +111,16 @@ Shape run() {
         "run", "The last stage, and how to compute. `search`, `skin` and `threads` never change a result.",
         {{"until", until(), optional,
           "when the run ends; must be given unless there are stages, of which the last is then the end"},
-         {"solver", solver(), fallback("auto"), "how motion is integrated, or equilibrium is found"},
+         {"accuracy", accuracy(), optional, "the error that is accepted; decides what the scenario leaves open"},
+         {"solver", solver(), fallback("auto"),
+          "how motion is integrated, or equilibrium is found; `auto` is `explicit` unless `accuracy` decides"},
          {"time_step", time_step(), fallback("auto"), "automatic: a share of the rigorous bound"},
-         {"step_fraction", number("1", positive), fallback("0.8"), "share of the rigorous bound in an automatic step"},
+         {"step_fraction", number("1", positive), derived("0.8, or by `accuracy`"),
+          "share of the rigorous bound in an automatic step"},
          {"unchecked", boolean(), fallback("false"),
           "accept a time step above the stable estimate, and joints so soft that blocks pass through each other"},
          {"damping", damping(), fallback("{}"), "of the run"},
-         {"freeze", either({choice({"never"}), number("1", {0.0, 0.1, true, false})}), fallback("never"),
+         {"freeze", either({choice({"never"}), number("1", {0.0, 0.1, true, false})}), derived("never, or by `accuracy`"),
           "a block at rest is not computed while less than this share of its weight is out of balance"},
          {"search",
           choice({"auto", "safe-regions", "verlet", "isu", "isu-separated", "isu-parallel", "dess", "dess-fused", "direct",

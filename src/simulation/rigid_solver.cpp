@@ -115,7 +115,8 @@ void Simulation::step_rigid(double dt) {
     if (unfinished) r.bodies.reset();
     lap(Part::account);
     check_speed();
-    state_.step_halvings = step_halvings(state_.stage_step, state_.step_halvings, speed_, wider * stable_.thinnest);
+    const double width = std::min(wider * stable_.thinnest, 4.0 * scenario_.run.most_travel.value_or(stable_.thinnest));
+    state_.step_halvings = step_halvings(state_.stage_step, state_.step_halvings, speed_, width);
     if (state_.total_steps % energy_interval == 0) {
         const Energies e = energies();
         check_energy(e, e.total() - state_.ledger.total0, energy_explosion);

@@ -76,19 +76,24 @@ std::vector<StageSpec> stages_of(const Scenario& scenario) {
 
 }  // namespace
 
-Simulation::Simulation(const Scenario& scenario, Scene scene)
-    : scenario_(scenario),
-      stages_(stages_of(scenario)),
+Simulation::Simulation(const Scenario& scenario, Scene scene) : Simulation(make_plan(scenario, scene), std::move(scene)) {}
+
+Simulation::Simulation(Plan plan, Scene&& scene)
+    : scenario_(std::move(plan.scenario)),
+      decisions_(plan),
+      stages_(stages_of(scenario_)),
       model_(std::move(scene.model)),
       state_(std::move(scene.state)),
       report_(std::move(scene.report)),
       driven_(std::exchange(model_.driven, {})),
       awake_(all_awake(model_.blocks.size())),
-      search_(make_search(scenario.run.search)),
-      skin_(scenario.run.skin.value_or(default_skin(model_))) {
+      search_(make_search(scenario_.run.search)),
+      skin_(scenario_.run.skin.value_or(default_skin(model_))) {
 #ifdef _OPENMP
-    omp_set_num_threads(scenario.run.threads);
+    omp_set_num_threads(scenario_.run.threads);
 #endif
+    if (scenario_.run.accuracy) stiffen(scenario_, model_, state_);
+    report_.warnings.insert(report_.warnings.end(), decisions_.warnings.begin(), decisions_.warnings.end());
     boundary_loads_.assign(model_.loads.begin(), model_.loads.begin() + model_.boundary_loads);
     for (int i = 0; i + 1 < stage_count(); ++i)
         if (stages_[i].reset) first_recorded_ = i + 1;

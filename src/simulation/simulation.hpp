@@ -9,6 +9,7 @@
 #include "model/build.hpp"
 #include "model/measure.hpp"
 #include "model/placed.hpp"
+#include "simulation/plan.hpp"
 #include "statics/static_solver.hpp"
 
 #include <array>
@@ -51,7 +52,8 @@ public:
     void step();        // one time step; the last one of a timed stage is cut to end exactly
     bool stage_over();  // by time, or by equilibrium (looked at every 10 steps)
 
-    const Scenario& scenario() const { return scenario_; }
+    const Scenario& scenario() const { return scenario_; }  // with nothing left open
+    const Decisions& decisions() const { return decisions_; }
     const Model& model() const { return model_; }
     const State& state() const { return state_; }
     const Placed& placed() const { return placed_; }
@@ -89,6 +91,8 @@ public:
     void drop_scratch();
 
 private:
+    Simulation(Plan plan, Scene&& scene);  // a reference: the plan is made before the scene is taken
+
     /// A way to advance, by the name it has in a scenario.
     struct Method {
         const char* name;
@@ -140,6 +144,7 @@ private:
     void lap(Part part) { seconds_[static_cast<int>(part)] += watch_.lap(); }
 
     const Scenario scenario_;
+    const Decisions decisions_;
     std::vector<StageSpec> stages_;  // those of the scenario and, last, `run`
     Model model_;
     State state_;

@@ -35,6 +35,12 @@ SCENARIOS = {
     "water": (INCLINE + "water: {level: 3}\n", r"water: not available yet", "water"),
     "bolts": (INCLINE + "bolts: []\n", r"bolts: not available yet", "bolts"),
     "deformation": (replaced("density: 2500", "density: 2500, young: 5e10"), r"materials\.rock\.young: not available yet", "young"),
+    "accuracy of more than all": (replaced("run: {", "run: {accuracy: 0.6, "), r"run\.accuracy: .*0\.5", "accuracy"),
+    "accuracy beyond the give of joints": (replaced("run: {", "run: {accuracy: 1e-9, solver: explicit, "),
+                                           r"run\.accuracy: 1e-09 cannot be reached: .*1e\+10 Pa/m", "accuracy"),
+    "accuracy beyond all": (replaced("run: {", "run: {accuracy: 1e-9, "), r"run\.accuracy: .*1e-06 can be reached", "accuracy"),
+    "joint stress with rigid joints": (replaced("run: {", "run: {accuracy: {joint_stress: 1e-2}, solver: rigid, "),
+                                       r"run\.accuracy\.joint_stress: .*explicit or static", "accuracy"),
     "negative time": (replaced("time: 0.1", "time: -1"), r"run\.until\.time: ", "-1"),
     "point outside": (replaced("point: [6.75, 4]", "point: [60, 4]"), r"record\.history\[0\]\.point: no block contains the point", "[60, 4]"),
     "expectation outside": (INCLINE + "expect:\n  - quantity: max_normal_stress\n    joint: [1, 1]\n    below: 1\n  - quantity: spin\n"

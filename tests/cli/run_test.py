@@ -124,6 +124,25 @@ cases:
             self.assert_same_results("b.h5", f"{name}.h5", apart_from=["/talus/canonical_json", "/talus/scenario"])
         self.assertRegex(self.talus("check", "a.yaml")[0], r"1 stage, ")
 
+    def test_check_says_what_an_accuracy_decides_and_without_one_what_it_would(self):
+        self.write("slope.yaml", INCLINE)
+        out, _ = self.talus("check", "slope.yaml")
+        self.assertRegex(out, r"solver +explicit")
+        self.assertRegex(out, r"advice +solver: rigid would do: .*to 1e-3 of the motion")
+        self.assertNotIn("accuracy  ", out)
+        out, _ = self.talus("check", "slope.yaml", "--set", "run.accuracy=1e-3")
+        self.assertRegex(out, r"accuracy +0\.001 of the motion.*\n +run\.solver +rigid: ")
+        self.assertRegex(out, r"cost .*about .* in all")
+        self.assertNotIn("advice", out)
+        self.assertIn("run.solver rigid", self.talus("run", "slope.yaml", "--set", "run.accuracy=1e-3")[0])
+
+    def test_a_run_estimates_its_error(self):
+        self.write("slope.yaml", INCLINE)
+        out, _ = self.talus("run", "slope.yaml", "--estimate-error")
+        self.assertRegex(out, r"error, estimated from a run with steps of 0\.45 of the length:\n +max_displacement .*error about")
+        self.assertEqual(len(re.findall("error about", out)), 5)  # two histories of two components, displacement and velocity
+        self.assertNotIn("error about", self.talus("run", "slope.yaml")[0])
+
     def test_search_and_threads_leave_no_trace_in_the_results(self):
         self.write("slope.yaml", SLOPE)
         self.talus("run", "slope.yaml", "--until", "0.1", "-o", "a.h5")
