@@ -26,7 +26,8 @@ private:
 
 void add(Hash& hash, const Contact& contact) {
     hash << contact.part_a << contact.part_b << contact.joint << contact.face << contact.edge_a << contact.edge_b;
-    hash << static_cast<int>(contact.touching) << static_cast<int>(contact.slipped) << static_cast<int>(contact.sliding);
+    hash << static_cast<int>(contact.touching) << static_cast<int>(contact.slipped) << static_cast<int>(contact.sliding)
+         << static_cast<int>(contact.struck);
     hash << contact.length << contact.normal_force << contact.shear_force;
     hash << contact.slip << contact.slip_sum << contact.dilation << contact.moment;
 }

@@ -32,6 +32,7 @@ struct Contact {
     std::uint8_t touching = 0;     // carries force now
     std::uint8_t slipped = 0;      // has slipped: residual strength
     std::uint8_t sliding = 0;      // slips in this step
+    std::uint8_t struck = 0;       // took an impact in this step, so its force says nothing of the next; rigid solver only
     std::uint8_t alive = 0;        // touching, or memory that is still kept; a contact that is not alive is forgotten
     double length = 0.0;           // m, over which it carries force
     double overlap = 0.0;          // m, mean over the length; < 0 open

@@ -27,9 +27,9 @@ namespace {
     [[maybe_unused]] const auto& [list, reaction, broken] = contacts;
     [[maybe_unused]] const auto& [total0, kinetic0, gravity, loads, work, local_damping, driven, friction, contact_damping,
                                   released, gained, largest] = ledger;
-    [[maybe_unused]] const auto& [part_a, part_b, joint, face, edge_a, edge_b, touching, slipped, sliding, alive, length,
-                                  overlap, normal_force, shear_force, shear_energy, strength, slip, slip_sum, dilation,
-                                  moment, point, normal] = contact;
+    [[maybe_unused]] const auto& [part_a, part_b, joint, face, edge_a, edge_b, touching, slipped, sliding, struck, alive,
+                                  length, overlap, normal_force, shear_force, shear_energy, strength, slip, slip_sum,
+                                  dilation, moment, point, normal] = contact;
 }
 
 template <class T>
@@ -149,6 +149,7 @@ void transfer_contacts(Archive& to, List& list) {
     to.column("contacts/touching", "1", list, &Contact::touching);
     to.column("contacts/slipped", "1", list, &Contact::slipped);
     to.column("contacts/sliding", "1", list, &Contact::sliding);
+    to.column("contacts/struck", "1", list, &Contact::struck);
     to.column("contacts/alive", "1", list, &Contact::alive);
     to.column("contacts/length", "m", list, &Contact::length);
     to.column("contacts/overlap", "m", list, &Contact::overlap);

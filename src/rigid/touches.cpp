@@ -21,6 +21,10 @@ constexpr int few = 1000;  // contacts: one thread has looked at them by the tim
 // below a hundredth of it; ten times as much, and steps that are a thousandth as high as a block are run over.
 constexpr double touching = 1e-9, narrow = 1e-5, came_in = 1e-4;
 
+// Of a step, from its middle: what hits at its very end must not be missed by rounding, or the next step finds it inside.
+constexpr double none = 2.0;  // share of a step: no impact in it
+constexpr double at_the_latest = 0.5 * (1.0 + 1e-9);
+
 Vec2 velocity_at(const Velocity& v, const Vec2& arm) { return Vec2(v.x, v.y) + v.spin * perp(arm); }
 
 double normal_velocity(const Touch& c, std::span<const Velocity> v, int end) {
@@ -185,7 +189,7 @@ void Touches::find(const Model& model, const Placed& placed, const State& state,
             c.cohesion = (joint.cohesion * bonded + (joint.weakens ? joint.cohesion_residual * rest : 0.0)) * dt;
         }
         // What acted before; a moment about the middle tells how it was shared by the ends.
-        if (known.normal_force > 0.0 && known.normal.dot(m.normal) > 0.99) {
+        if (known.normal_force > 0.0 && !known.struck && known.normal.dot(m.normal) > 0.99) {
             const double couple = known.moment / m.length;
             if (m.count == 2) {
                 // One end alone: the stretch has hardly the length any more with which the moment was taken.
@@ -212,7 +216,7 @@ void Touches::find(const Model& model, const Placed& placed, const State& state,
 // would lose the share of a step each time. The impulse acts where the two are then: with the arms of the middle of the step
 // a block that rocks would lose a share of its spin that depends on where in the step it lands.
 void Touches::find_impacts(const Bodies& bodies, std::span<const Velocity> before, double fall, double dt) {
-    impact_.assign(bodies.size(), 1.0);
+    impact_.assign(bodies.size(), none);
     ahead_.assign(touches_.size(), 0.0);
     landed_.assign(2 * touches_.size(), 0.0);
     bool any = false;
@@ -223,7 +227,7 @@ void Touches::find_impacts(const Bodies& bodies, std::span<const Velocity> befor
         for (int end = 0; end < c.ends; ++end) {
             const double gap = manifold_[i].gap[end], change = normal_velocity(c, before, end);
             const double approach = -std::min(change, normal_velocity(c, bodies.velocity, end));
-            hits[end] = !(c.p[end] > 0.0 || -change * dt <= 4.0 * fall || std::abs(gap) > 0.5 * dt * approach);
+            hits[end] = !(c.p[end] > 0.0 || -change * dt <= 4.0 * fall || std::abs(gap) > at_the_latest * dt * approach);
             if (!hits[end]) continue;
             // What else carries a block that does not bounce, such as the corner it rocks about, is not known here.
             const double gained = rebound_[i] > 0.0 ? normal_velocity(c, bodies.velocity, end) - change : 0.0;
@@ -246,7 +250,7 @@ void Touches::find_impacts(const Bodies& bodies, std::span<const Velocity> befor
         }
     }
     for (Touch& c : touches_) {
-        const double share = std::min(any ? impact_[c.a] : 1.0, any ? impact_[c.b] : 1.0);
+        const double share = any ? std::min(impact_[c.a], impact_[c.b]) : none;
         for (int k = 0; k < 3 && share < 1.0; ++k) {
             c.earlier[k] = share * c.p[k];
             c.p[k] -= c.earlier[k];
@@ -357,6 +361,11 @@ void Touches::add_forces(const Model& model, const Placed& placed, const State& 
     }
 }
 
+bool Touches::moved_by_impact(const Bodies& bodies, int body) const {
+    const Softness& soft = bodies.softness[body];
+    return impact_[body] <= 1.0 && soft.x + soft.y + soft.spin > 0.0;
+}
+
 void Touches::record(const Model& model, const Placed& placed, const Bodies& bodies, std::span<const Velocity> before,
                      std::span<const Velocity> after, std::span<const Velocity> displacement, double dt, double resolution,
                      State& state) const {
@@ -379,7 +388,7 @@ void Touches::record(const Model& model, const Placed& placed, const Bodies& bod
                                         placed.block[b].position.x() - placed.block[a].position.x(),
                                         placed.block[b].position.y() - placed.block[a].position.y())
                                      .distance <= memory_reach(model, c.part_a, c.part_b)) {
-                c.touching = c.sliding = 0;
+                c.touching = c.sliding = c.struck = 0;
                 c.length = c.normal_force = c.shear_force = c.strength = c.moment = 0.0;
             } else {
                 c = Contact{.part_a = c.part_a, .part_b = c.part_b, .joint = c.joint};
@@ -389,6 +398,7 @@ void Touches::record(const Model& model, const Placed& placed, const Bodies& bod
         const double bound = t->friction * pressed + t->cohesion;
         const double u0 = tangent_velocity(*t, before), u1 = tangent_velocity(*t, after);
         c.touching = c.alive = 1;
+        c.struck = moved_by_impact(bodies, t->a) || moved_by_impact(bodies, t->b);
         c.sliding = std::abs(t->p[2]) >= bound * (1.0 - 1e-9) && std::abs(u1) > resolution;
         c.edge_a = m->count == 2 ? m->edge_a : -1;
         c.edge_b = m->count == 2 ? m->edge_b : -1;

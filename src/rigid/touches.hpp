@@ -52,6 +52,7 @@ public:
     void add_earlier();
 
 private:
+    bool moved_by_impact(const Bodies& bodies, int body) const;  // in this step
     void find_impacts(const Bodies& bodies, std::span<const Velocity> before, double fall, double dt);
     void take_to_time_of_impact(const Bodies& bodies, std::span<const Velocity> before, double exact, double dt,
                                 std::span<Velocity> displacement) const;
@@ -66,7 +67,7 @@ private:
     std::vector<End> end_;               // [2 touches] what becomes of it in this step
     std::vector<double> landed_;         // [2 touches] m, gap of an end that bounces at the end of the step
     std::vector<double> ahead_;          // [touches] s, after the middle of the step: when it hits, 0 = it does not
-    std::vector<double> impact_;         // [nq] share of the step before the first impact
+    std::vector<double> impact_;         // [nq] share of the step before the first impact; above 1: none
     std::vector<std::uint8_t> pressed_;  // [2 touches] an end that presses after the step
     std::vector<int> slot_;              // [touches] in the contact list
     std::vector<int> hint_;              // [contacts] see find_manifold

@@ -62,8 +62,10 @@ private:
             e.newton_steps);
     }
     void one(const Contact& c) {
-        add(c.part_a, c.part_b, c.joint, c.face, c.edge_a, c.edge_b, c.touching, c.slipped, c.sliding, c.alive, c.length);
-        add(c.overlap, c.normal_force, c.shear_force, c.strength, c.slip, c.slip_sum, c.dilation, c.moment, c.point, c.normal);
+        add(c.part_a, c.part_b, c.joint, c.face, c.edge_a, c.edge_b, c.touching, c.slipped, c.sliding, c.struck, c.alive,
+            c.length);
+        add(c.overlap, c.normal_force, c.shear_force, c.strength, c.slip, c.slip_sum, c.dilation, c.moment, c.point,
+            c.normal);
     }
     std::string bytes_;
 };

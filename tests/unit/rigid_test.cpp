@@ -9,6 +9,7 @@
 #include "support/whole_run.hpp"
 
 #include <cmath>
+#include <numbers>
 
 using namespace talus;
 using namespace talus::rigid;
@@ -327,4 +328,30 @@ TEST_CASE("rigid: a pulse gives all of its impulse wherever in a step it ends") 
         CAPTURE(step);
         CHECK(found == Approx(slip).epsilon(25.0 * step * step));  // 4e-4 at 4 ms; sampled once a step it is 7e-3
     }
+}
+
+TEST_CASE("rigid: a square that lands on one corner and then on the other keeps its energy, whenever in a step it lands") {
+    for (const double height : {0.002, 0.0017})  // at 2 m/s: at the very end of a step of 1 ms, and within it
+        for (const double angle_deg : {1.0, 3.0, 87.0})
+            for (const double step : {0.002, 0.001, 0.0005}) {
+                Scenario scene = scenario_of(R"(
+materials: {rock: {density: 1000}}
+joints: {floor: {normal_stiffness: 1e10, shear_stiffness: 1e10, restitution: 1}}
+blocks:
+  - {name: floor, rectangle: {corner: [-10, -1], size: [20, 1]}, held: true}
+  - {name: square, rectangle: {corner: [0, 0], size: [1, 1], angle_deg: 0}, velocity: [0, -2]}
+run: {until: {time: 0.3}, solver: rigid}
+)");
+                const double angle = angle_deg * std::numbers::pi / 180.0;
+                Polygon turned;
+                for (const Vec2& p : scene.blocks[1].outline)
+                    turned.emplace_back(std::cos(angle) * p.x() - std::sin(angle) * p.y(),
+                                        height + std::sin(angle) * p.x() + std::cos(angle) * p.y());
+                scene.blocks[1].outline = turned;
+                scene.run.time_step = step;
+                WholeRun run(scene);
+                run.to_the_end();
+                CAPTURE(height, angle_deg, step);
+                CHECK(run.simulation().energies().kinetic == Approx(2000.0).epsilon(1e-9));
+            }
 }
