@@ -83,6 +83,8 @@ public:
     }
 
     Plan plan() {
+        if (accuracy_ < finest)
+            refuse("no solver is known to hold it; " + share(finest) + " can be reached where motion is regular");
         need_ = need_of_springs(scene(), stages_, model_, burden_);
         plan_.give_is_error = need_.give_is_error;
         if (!need_.why.empty() && has_restitution(scene()) && !uses("rigid"))
@@ -91,8 +93,6 @@ public:
         choose_solvers();
         choose_stiffness();
         check_give();
-        if (accuracy_ < finest)
-            refuse("no solver is known to hold it; " + share(finest) + " can be reached where motion is regular");
         choose_steps();
         choose_freezing();
         return std::move(plan_);

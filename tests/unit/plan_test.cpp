@@ -109,9 +109,9 @@ TEST_CASE("an accuracy that cannot be reached is refused with the reason and wit
     // Top of three blocks: about rho g (3 + 2 + 1) / kn = 1.5e-5 m.
     CHECK_THAT(soft, Contains("f.yaml:8 run.accuracy: 1e-05 cannot be reached: solver: explicit is given (run)") &&
                          Contains("joints of 1e+10 Pa/m") && Contains("could be") && Contains("joint_stress"));
-    CHECK_THAT(refusal("until: {time: 1}, accuracy: 1e-9, solver: explicit", "", {stiff, shear}),
-               Contains("cannot be reached"));
     CHECK_THAT(refusal("until: {time: 1}, accuracy: 1e-9"), Contains("1e-06 can be reached"));
+    CHECK_THAT(refusal("until: {time: 1}, accuracy: 1e-9, solver: explicit", "", {stiff, shear}),
+               Contains("1e-06 can be reached"));
     CHECK_THAT(refusal(moves + ", damping: {contact: 1e-3}", "", {stiff, shear}), Contains("damping is given (run)"));
     CHECK_THAT(refusal("until: {time: 1}, accuracy: {joint_stress: 0.01}, solver: rigid"),
                Contains("f.yaml:8 run.accuracy.joint_stress: the rigid solver finds one of the states"));

@@ -17,19 +17,28 @@ using namespace talus::test;
 
 namespace {
 
-Manifold between(const Polygon& first, const Polygon& second, double reach) {
-    const Model model = blocks_of_parts({{first}, {second}});
+/// Two blocks at rest where they are drawn.
+struct TwoAtRest {
+    Model model;
     Motion motion;
-    motion.position = model.blocks.start;
-    motion.angle = {0.0, 0.0};
-    motion.velocity.assign(2, Vec2::Zero());
-    motion.spin = {0.0, 0.0};
     Placed placed;
-    place(model, all_awake(2), motion, 0.0, placed);
+
+    TwoAtRest(const Polygon& first, const Polygon& second) : model(blocks_of_parts({{first}, {second}})) {
+        motion.position = model.blocks.start;
+        motion.angle = {0.0, 0.0};
+        motion.velocity.assign(2, Vec2::Zero());
+        motion.spin = {0.0, 0.0};
+        place(model, all_awake(2), motion, 0.0, placed);
+    }
+    PlacedPart part(int p) const { return {model, placed, p}; }
+    Vec2 apart() const { return motion.position[1] - motion.position[0]; }
+};
+
+Manifold between(const Polygon& first, const Polygon& second, double reach) {
+    const TwoAtRest two(first, second);
     int hint = -1;
-    Manifold m = find_manifold(PlacedPart(model, placed, 0), PlacedPart(model, placed, 1),
-                               motion.position[1] - motion.position[0], reach, 1e-5, hint);
-    for (Vec2& p : m.point) p += motion.position[0];
+    Manifold m = find_manifold(two.part(0), two.part(1), two.apart(), reach, 1e-5, hint);
+    for (Vec2& p : m.point) p += two.motion.position[0];
     return m;
 }
 
@@ -202,17 +211,9 @@ TEST_CASE("parts that came through a low edge are kept apart by the face they ca
     // A block of 1 m has come 2 cm far into a step that is 1 cm high: up would be the shorter way out.
     const Polygon step = scenes::rectangle(1, -1, 3, 0.01), block = scenes::rectangle(0.02, 0, 1.02, 1);
     CHECK(std::abs(between(step, block, 0.01).normal.y()) == Approx(1.0));
-    const Model model = blocks_of_parts({{step}, {block}});
-    Motion motion;
-    motion.position = model.blocks.start;
-    motion.angle = {0.0, 0.0};
-    motion.velocity.assign(2, Vec2::Zero());
-    motion.spin = {0.0, 0.0};
-    Placed placed;
-    place(model, all_awake(2), motion, 0.0, placed);
+    const TwoAtRest two(step, block);
     const auto came = [&](double speed) {
-        return find_manifold(PlacedPart(model, placed, 0), PlacedPart(model, placed, 1),
-                             motion.position[1] - motion.position[0], 0.01, 1e-5, {{}, {speed, 0.0, 0.0}, 0.01});
+        return find_manifold(two.part(0), two.part(1), two.apart(), 0.01, 1e-5, {{}, {speed, 0.0, 0.0}, 0.01});
     };
     const Manifold m = came(3.0);
     REQUIRE(m.count == 2);
