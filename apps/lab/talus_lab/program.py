@@ -6,7 +6,7 @@ import os
 import shutil
 from pathlib import Path
 
-from talus_lab.run import ResultError
+from talus_lab.errors import ResultError
 
 
 def find_talus() -> str:

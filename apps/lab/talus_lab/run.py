@@ -14,12 +14,11 @@ from typing import Mapping
 import h5py
 import numpy as np
 
+from talus_lab.errors import ResultError, nearest
+
 SCHEMA_VERSION = 1
 JOINT_STATES = ("elastic", "sliding", "slipped", "bonded", "broken", "open")  # values of the contact column `state`
-
-
-class ResultError(Exception):
-    """The file cannot be read as a result of this version."""
+MECHANISMS = ("still", "slide", "topple", "slide and topple", "fall", "rotation")  # values of block_mechanism of the verdict
 
 
 def open_run(path: str | Path) -> Run:
@@ -185,14 +184,41 @@ class Run:
         return MappingProxyType({name: _frozen(column[: self.frame_count]) for name, column in table.items()})
 
     @cached_property
-    def histories(self) -> Mapping[str, Mapping[str, np.ndarray]]:
-        """By name: a table of columns of equal length, `time` [s] and then those of the scenario, in its order."""
-        tables = {}
+    def history_names(self) -> tuple[str, ...]:
         with self._file() as file:
-            for name, group in file["talus/histories"].items():
-                columns = ["time", *_texts(group.attrs["columns"]).tolist()]
-                tables[name] = MappingProxyType({column: _frozen(group[column][()]) for column in columns})
-        return MappingProxyType(tables)
+            return tuple(file["talus/histories"]) if "talus/histories" in file else ()
+
+    @property
+    def histories(self) -> Mapping[str, Mapping[str, np.ndarray]]:
+        """By name, all of them: see `history`."""
+        return MappingProxyType({name: self.history(name) for name in self.history_names})
+
+    def history(self, name: str) -> Mapping[str, np.ndarray]:
+        """A table of columns of equal length: `time` [s] and then those of the scenario, in its order."""
+        if name not in self.history_names:
+            raise ResultError(f"{self.path}: no history {name}{nearest(name, self.history_names)}")
+        with self._file() as file:
+            group = file[f"talus/histories/{name}"]
+            columns = ["time", *_texts(group.attrs["columns"]).tolist()]
+            return MappingProxyType({column: _frozen(group[column][()]) for column in columns})
+
+    @cached_property
+    def verdict(self) -> Mapping[str, object]:
+        """What the engine has found: verdict, mechanism, reason, time [s], max_displacement [m], moving_blocks, moving_area [m2], ...,
+        and block_mechanism [blocks], index into MECHANISMS. Empty if the run ended before anything could be said."""
+        with self._file() as file:
+            if "talus/verdict" not in file:
+                return MappingProxyType({})
+            group = file["talus/verdict"]
+            return MappingProxyType({name: _plain(value) for name, value in group.attrs.items()}
+                                    | {name: _frozen(column[()]) for name, column in group.items()})
+
+    def unit(self, path: str) -> str:
+        """Unit of a dataset below /talus, such as blocks/mass; "1" for plain numbers, "-" for text."""
+        with self._file() as file:
+            if path not in file["talus"]:
+                raise ResultError(f"{self.path}: no dataset {path}")
+            return str(_plain(file["talus"][path].attrs.get("unit", "1")))
 
     # Reading
     def _file(self) -> h5py.File:

@@ -17,7 +17,7 @@ from typing import Callable, Iterable, Mapping
 
 import yaml
 
-from talus_lab.run import ResultError
+from talus_lab.errors import ResultError
 
 KEYS = ("scenarios", "output", "page", "methods", "tests")
 ANY = "auto"  # refused before a method was chosen: holds for each of them

@@ -13,7 +13,7 @@ from talus_lab.bench.measure import COLUMNS
 from talus_lab.bench.select import growth
 from talus_lab.cli import main
 from talus_lab.program import find_talus
-from talus_lab.run import ResultError
+from talus_lab.errors import ResultError
 from talus_lab.study.formulas import FormulaError, filled
 from talus_lab.study.page import number
 

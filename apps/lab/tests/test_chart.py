@@ -21,7 +21,7 @@ from talus_lab.chart.tables import seconds
 from talus_lab.chart.values import VALUES, Look
 from talus_lab.cli import main
 from talus_lab.program import find_talus
-from talus_lab.run import ResultError
+from talus_lab.errors import ResultError
 from talus_lab.runners import scene as runner
 
 ROOT = Path(__file__).resolve().parents[3]

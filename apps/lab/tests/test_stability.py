@@ -6,7 +6,7 @@ import pytest
 
 from talus_lab import cli, stability
 from talus_lab.program import find_talus
-from talus_lab.run import ResultError
+from talus_lab.errors import ResultError
 
 CONFIG = """
 scenarios: suite

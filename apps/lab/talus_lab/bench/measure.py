@@ -11,7 +11,7 @@ from typing import Callable, Iterator
 
 from talus_lab.bench.config import Config, Study, overrides
 from talus_lab.program import find_peers
-from talus_lab.run import ResultError
+from talus_lab.errors import ResultError
 from talus_lab.study.kept import Row, digest, read_rows, write_rows
 
 # Beside those of the point: the columns of `talus bench search`, and then those of `talus bench step` that it lacks (docs/benchmarks.md).

@@ -11,7 +11,7 @@ from typing import Callable, Iterator
 from talus_lab.chart.config import REFERENCE, Config, Setting, figure_of, keys_of, scale_of, settings_of
 from talus_lab.chart.methods import Done, Prepared, command_of
 from talus_lab.chart.values import VALUES
-from talus_lab.run import ResultError
+from talus_lab.errors import ResultError
 from talus_lab.study.kept import Row, digest, read_rows, write_rows
 
 # errors: `name=value` of each error of the scene. unsure: how much of `error` may be that of the reference. said: why there is no

@@ -8,7 +8,7 @@ from typing import Callable
 import numpy as np
 
 from talus_lab.chart.motion import Motion
-from talus_lab.run import ResultError
+from talus_lab.errors import ResultError
 
 
 @dataclass(frozen=True)

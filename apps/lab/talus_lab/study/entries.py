@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import difflib
 from dataclasses import MISSING, fields
 from pathlib import Path
 from typing import Any
 
 import yaml
 
-from talus_lab.run import ResultError
+from talus_lab.errors import ResultError, nearest
 
 TYPES = {"str": (str, "a text"), "int": (int, "a whole number"), "float": ((int, float), "a number"), "bool": (bool, "true or false"),
          "list": (list, "a list"), "dict": (dict, "a mapping"), "Any": (object, "")}
@@ -69,8 +68,3 @@ def unknown_keys(given: dict, known: list[str], where: str, faults: list[str]) -
 def strangers(names: Any, known: Any, where: str) -> list[str]:
     """A fault for each name that is not known."""
     return [f"{where}: unknown {name}{nearest(name, known)}" for name in names if name not in known]
-
-
-def nearest(name: object, known: Any) -> str:
-    close = difflib.get_close_matches(str(name), list(known), 1)
-    return f"; did you mean {close[0]}?" if close else f"; there are {', '.join(known)}"

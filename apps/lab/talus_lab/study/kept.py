@@ -8,7 +8,7 @@ import os
 from pathlib import Path
 from typing import Sequence
 
-from talus_lab.run import ResultError
+from talus_lab.errors import ResultError
 
 Row = dict[str, str]
 

@@ -7,7 +7,7 @@ import re
 from pathlib import Path
 from typing import Any, Callable, Iterable, Sequence
 
-from talus_lab.run import ResultError
+from talus_lab.errors import ResultError
 
 BLOCK = re.compile(r"(<!-- table ([^ >]+) -->\n).*?(<!-- end -->)", re.DOTALL)
 NOTHING = "not measured\n"
