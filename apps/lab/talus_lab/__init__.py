@@ -3,6 +3,7 @@
 >>> import talus_lab
 >>> run = talus_lab.open("results/rock_slope.h5")
 >>> talus_lab.measures.max_displacement(run)
+>>> talus_lab.charts.picture(run, color="speed").savefig("slope.png")
 """
 
 from __future__ import annotations
@@ -13,11 +14,11 @@ from typing import TYPE_CHECKING
 from talus_lab.errors import ResultError
 
 if TYPE_CHECKING:
-    from talus_lab import measures
+    from talus_lab import charts, measures
     from talus_lab.run import Run, open_run as open
 
 __version__ = "0.1.0"
-__all__ = ["ResultError", "Run", "measures", "open"]
+__all__ = ["ResultError", "Run", "charts", "measures", "open"]
 
 
 def __getattr__(name: str) -> object:

@@ -3,25 +3,27 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Sequence
+from functools import cached_property
+from typing import Mapping
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.collections import Collection, LineCollection, PathCollection, PolyCollection
+from matplotlib.collections import Collection, LineCollection, PathCollection
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.path import Path
 
 from talus_lab.run import JOINT_STATES, Run, placed
+from talus_lab.silhouette import silhouette
+from talus_lab.stress import block_stress, contact_force, principal
+from talus_lab.style import EDGE, HELD, NAME_COLORS, STATE_COLORS
+from talus_lab.units import quantity
 
 OPEN = JOINT_STATES.index("open")
 LIGHT = 0.01  # of the mean contact force
-EDGE = "#262626"
-HELD = dict(facecolor="#d9d9d9", edgecolor="#8c8c8c", hatch="////")
-# Okabe and Ito's colours, which colour-blind people can tell apart
-STATE_COLORS = dict(elastic="#9a9a9a", sliding="#d55e00", slipped="#e69f00", bonded="#0072b2", broken="#cc79a7")
-NAME_COLORS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000")
-PALE_COLORS = ("#e8dcc4", "#c9d8e6", "#d6e4c8", "#ead1dc", "#d9d2e9", "#f4e3b2", "#cfe5e2")
+PRESSED, PULLED, BEFORE = "#a50026", "#0072b2", "#000000"
+TOGETHER = 500  # polygons or lines in one path: ten times as many take as long; the renderer refuses paths of a hundred thousand
+OUTLINED = 30  # blocks: of so many each one's outline can be told apart, of more only that of the whole
 
 
 @dataclass(frozen=True)
@@ -42,11 +44,15 @@ class Geometry:
         """[blocks] rad"""
         return self.run.angle(self.frame) + (self.exaggerate - 1) * self.run.rotation(self.frame)
 
+    @cached_property
+    def corners(self) -> np.ndarray:
+        """[corners, 2] m, of all parts"""
+        return placed(self.run.arm, self.position, self.angle, self.run.corner_block)
+
     @property
     def polygons(self) -> list[np.ndarray]:
         """[parts] of [corners, 2] m"""
-        corners = placed(self.run.arm, self.position, self.angle, self.run.corner_block)
-        return np.split(corners, self.run.first_corner[1:-1])
+        return np.split(self.corners, self.run.first_corner[1:-1])
 
     def carried(self, points: np.ndarray, block: np.ndarray) -> np.ndarray:
         """[n, 2] m: points that belong to blocks [n], moved from where they are to where they are drawn."""
@@ -69,29 +75,50 @@ def width(ax: Axes, run: Run, share: float, least: float, most: float) -> float:
     return float(np.clip(share * block_size(run) / (high - low) * axes_width, least, most))
 
 
-def draw_blocks(ax: Axes, run: Run, geometry: Geometry, colors: np.ndarray) -> None:
-    """Blocks filled with colors [blocks, 4], held ones hatched, deleted ones left out; edges on top."""
+def draw_blocks(ax: Axes, run: Run, geometry: Geometry, colors: np.ndarray, hatches: Mapping[str, np.ndarray] = {}) -> list[Collection]:
+    """Blocks filled with colors [blocks, 4], hatched where told so (hatch -> blocks), held ones hatched, deleted ones left out; edges
+    on top."""
     present = ~run.removed(geometry.frame)[run.part_block]
     held = run.blocks["held"].astype(bool)[run.part_block]
-    polygons = geometry.polygons
-    free_parts, held_parts = np.flatnonzero(present & ~held), np.flatnonzero(present & held)
+    free = np.flatnonzero(present & ~held)
+    color, of = np.unique(colors[run.part_block[free]], axis=0, return_inverse=True)
+    filled = [(path, k) for k in range(len(color)) for path in _polygons(run, geometry, free[of.ravel() == k])]
     # An edge in the colour of the face closes the hairline between two parts of one block.
-    _add(ax, PolyCollection([polygons[p] for p in free_parts], facecolors=colors[run.part_block[free_parts]],
-                                     edgecolors="face", linewidths=0.3, zorder=1))
-    _add(ax, PathCollection([_compound([polygons[p] for p in held_parts])], **HELD, linewidths=0, zorder=1))
+    drawn = [PathCollection([path for path, _ in filled], facecolors=[color[k] for _, k in filled], edgecolors="face", linewidths=0.3,
+                            zorder=1),
+             PathCollection(_polygons(run, geometry, np.flatnonzero(present & held)), **HELD, linewidths=0, zorder=1)]
+    for pattern, blocks in hatches.items():
+        parts = np.flatnonzero(present & np.isin(run.part_block, blocks))
+        drawn.append(PathCollection(_polygons(run, geometry, parts), facecolor="none", edgecolor="#606060", hatch=pattern, linewidths=0,
+                                    zorder=1.5))
+    start, end, shown = _edges(run, geometry)
+    drawn.append(PathCollection(_segments(start[shown], end[shown]), facecolor="none", edgecolors=EDGE, capstyle="round",
+                                linewidths=width(ax, run, 0.03, 0.12, 0.6), zorder=2))
+    for collection in drawn:
+        _add(ax, collection)
+    return drawn
 
-    start = np.concatenate(polygons)
-    after = np.arange(len(start)) + 1
-    after[run.first_corner[1:] - 1] = run.first_corner[:-1]
-    shown = ~run.internal & np.repeat(present, np.diff(run.first_corner))
-    _add(ax, LineCollection(np.stack([start, start[after]], axis=1)[shown], colors=EDGE,
-                                     linewidths=width(ax, run, 0.03, 0.12, 0.6), capstyle="round", zorder=2))
+
+def _polygons(run: Run, geometry: Geometry, parts: np.ndarray) -> list[Path]:
+    """Convex parts as a few paths of many polygons: of as many paths as polygons, matplotlib would take ten times as long."""
+    paths = []
+    for some in np.split(parts, range(TOGETHER, len(parts), TOGETHER)):
+        first, count = run.first_corner[some], np.diff(run.first_corner)[some]
+        begin = np.cumsum(count + 1) - count - 1  # of each ring, which ends where it begins
+        corner = np.arange((count + 1).sum()) - np.repeat(begin, count + 1)
+        corner = np.repeat(first, count + 1) + np.where(corner == np.repeat(count, count + 1), 0, corner)
+        codes = np.full(len(corner), Path.LINETO, Path.code_type)
+        codes[begin] = Path.MOVETO
+        paths.append(Path(geometry.corners[corner], codes))
+    return paths
 
 
-def _compound(polygons: list[np.ndarray]) -> Path:
-    """All polygons as one path: hatching thousands of them one by one would take seconds."""
-    codes = [np.r_[Path.MOVETO, np.full(len(polygon) - 1, Path.LINETO)] for polygon in polygons]
-    return Path(np.concatenate(polygons), np.concatenate(codes)) if polygons else Path(np.empty((0, 2)))
+def _segments(start: np.ndarray, end: np.ndarray) -> list[Path]:
+    """Straight lines from start to end [n, 2] m as a few paths."""
+    points = np.stack([start, end], axis=1).reshape(-1, 2)
+    codes = np.tile(np.array([Path.MOVETO, Path.LINETO], Path.code_type), len(start))
+    return [Path(some, code) for some, code in zip(np.split(points, range(2 * TOGETHER, len(points), 2 * TOGETHER)),
+                                                   np.split(codes, range(2 * TOGETHER, len(codes), 2 * TOGETHER)))]
 
 
 def held_handle() -> Patch:
@@ -165,15 +192,13 @@ def draw_forces(ax: Axes, run: Run, geometry: Geometry) -> list[Line2D]:
     contacts = run.contacts(geometry.frame)
     if not contacts or not len(contacts["x"]):
         return []
-    normal = np.column_stack([contacts["nx"], contacts["ny"]]).astype(float)
-    force = normal * contacts["normal_force"][:, None]
-    force += np.column_stack([-normal[:, 1], normal[:, 0]]) * contacts["shear_force"][:, None]
+    force = contact_force(contacts)
     size = np.hypot(*force.T)
     largest = size.max()
     if largest == 0:
         return []
     handles, widest = [], width(ax, run, 0.2, 1.0, 5.0)
-    for label, color, pulls in (("contact force", "#a50026", False), ("tension", "#0072b2", True)):
+    for label, color, pulls in (("contact force", PRESSED, False), ("tension", PULLED, True)):
         rows = (size > 0.01 * largest) & ((contacts["normal_force"] < 0) == pulls)
         if not rows.any():
             continue
@@ -186,29 +211,60 @@ def draw_forces(ax: Axes, run: Run, geometry: Geometry) -> list[Line2D]:
     return handles
 
 
+def draw_stress(ax: Axes, run: Run, geometry: Geometry) -> list[Line2D]:
+    """Principal stresses of each block as a cross at its centroid, arms as long as the stress is large, tension in another
+    colour. The largest tenth of a per cent is cut, so that a block that is nipped between two corners does not shrink all others."""
+    stress = block_stress(run, geometry.frame)
+    known = np.flatnonzero(~np.isnan(stress[:, 0, 0]))
+    major, minor, angle = principal(stress[known])
+    if not len(known) or max(np.abs(major).max(), np.abs(minor).max()) == 0:
+        return []
+    size, turned = np.concatenate([major, minor]), np.concatenate([angle, angle + np.pi / 2])
+    turned = turned + np.tile((geometry.angle - run.angle(geometry.frame))[known], 2)
+    longest = float(np.percentile(np.abs(size), 99.9))
+    arm = np.clip(np.abs(size) / longest, 0, 1) * 0.55 * np.tile(np.sqrt(run.blocks["area"][known]), 2)
+    half = np.column_stack([np.cos(turned), np.sin(turned)]) * arm[:, None]
+    middle, handles, wide = np.tile(geometry.position[known], (2, 1)), [], width(ax, run, 0.05, 0.35, 1.4)
+    for label, color, rows in (("compression", PRESSED, size > 0), ("tension", PULLED, size < 0)):
+        rows = rows & (np.abs(size) > 0.01 * longest)
+        if rows.any():
+            arms = np.stack([middle - half, middle + half], axis=1)[rows]
+            _add(ax, LineCollection(arms, colors="white", linewidths=2.5 * wide, alpha=0.8, zorder=4.9))  # seen on dark blocks too
+            _add(ax, LineCollection(arms, colors=color, linewidths=wide, zorder=5))
+            handles.append(Line2D([], [], color=color, linewidth=1.4,
+                                  label=f"{label}, largest {quantity(float(np.abs(size[rows]).max()), 'Pa')}"))
+    return handles
+
+
+def draw_outline(ax: Axes, run: Run, geometry: Geometry, label: str) -> list[Line2D]:
+    """Where the free blocks stand, as a dashed line: around each of a few, around all of many."""
+    free = np.flatnonzero(~run.removed(geometry.frame)[run.part_block] & ~run.blocks["held"].astype(bool)[run.part_block])
+    if not len(free):
+        return []
+    if len(np.unique(run.part_block[free])) <= OUTLINED:
+        start, after, shown = _edges(run, geometry)
+        lines = np.stack([start, after], axis=1)[shown & np.isin(run.corner_block, run.part_block[free])]
+    else:
+        polygons = geometry.polygons
+        lines = silhouette([polygons[p] for p in free], 0.5 * block_size(run) ** 2)
+    _add(ax, LineCollection(lines, colors=BEFORE, linewidths=1.0, linestyles=(0, (4, 2)), zorder=6))
+    return [Line2D([], [], color=BEFORE, linewidth=1.0, linestyle=(0, (4, 2)), label=label)]
+
+
+def _edges(run: Run, geometry: Geometry) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Ends [corners, 2] m of the edge that starts at each corner, and whether [corners] it is seen."""
+    start = geometry.corners
+    after = np.arange(len(start)) + 1
+    after[run.first_corner[1:] - 1] = run.first_corner[:-1]
+    return start, start[after], ~run.internal & ~run.removed(geometry.frame)[run.corner_block]
+
+
 def mark(ax: Axes, points: np.ndarray, label: str) -> list[Line2D]:
     """Rings around places that deserve a look."""
     if not len(points):
         return []
     return ax.plot(*points.T, linestyle="none", marker="o", markersize=11, markerfacecolor="none", markeredgecolor="#d55e00",
                    markeredgewidth=1.4, zorder=6, label=label)
-
-
-def prefix(value: float, unit: str) -> tuple[float, str]:
-    """Factor and unit with which a value reads well: 2.5e-3 m -> (1e3, 'mm'). Times are in s down to a tenth of it."""
-    steps: Sequence[tuple[float, str]] = [(1e9, "G"), (1e6, "M"), (1e3, "k"), (1, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n")]
-    if unit in ("m", "m/s", "s", "deg"):
-        steps = steps[3:] if unit != "deg" else [(1, "")]
-    rounded = abs(float(f"{value:.4g}"))  # 0.99999 s is 1 s, not 1000 ms
-    for size, letter in steps:
-        if rounded >= (0.1 if unit == "s" and size == 1 else size):
-            return 1 / size, letter + unit
-    return 1.0, unit
-
-
-def quantity(value: float, unit: str, digits: int = 3) -> str:
-    factor, unit = prefix(value, unit)
-    return f"{float(f'{value * factor:.{digits}g}'):.12g} {unit}"  # 1200, not 1.2e+03
 
 
 def _add(ax: Axes, collection: Collection) -> None:

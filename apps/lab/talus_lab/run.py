@@ -158,6 +158,10 @@ class Run:
         """[blocks, 2] m/s, of the centroids (single precision)."""
         return self._block_field("velocity", frame)
 
+    def unbalanced_force(self, frame: int) -> np.ndarray:
+        """[blocks] N per m, magnitude, along the axes that are free to move, without local damping (single precision)."""
+        return self._block_field("unbalanced_force", frame)
+
     def corners(self, frame: int) -> np.ndarray:
         """[corners, 2] m, where the corners of all parts are."""
         return placed(self.arm, self.position(frame), self.angle(frame), self.corner_block)

@@ -1,12 +1,23 @@
+import subprocess
+import sys
+from types import SimpleNamespace
+
+import h5py
 import matplotlib.image
 import numpy as np
 import pytest
-from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.collections import LineCollection, PathCollection
 
 import talus_lab
-from conftest import ORIGIN
-from talus_lab import layers, plot
+from conftest import ORIGIN, tell
+from talus_lab import colors, curves, layers, plot, stress, units
 from talus_lab.cli import main
+from talus_lab.silhouette import silhouette
+
+
+def drawn(figure):
+    """Blocks, held blocks, edges, in this order."""
+    return [c for c in figure.axes[0].collections if isinstance(c, PathCollection)]
 
 
 def lines(figure):
@@ -17,10 +28,10 @@ def legend(figure):
     return [text.get_text() for legend in figure.legends for text in legend.get_texts()]
 
 
-@pytest.mark.parametrize("color", plot.COLORS)
+@pytest.mark.parametrize("color", colors.COLORS)
 def test_every_colouring_makes_a_picture(result, tmp_path, color):
     picture = tmp_path / f"{color}.png"
-    assert main(["plot", str(result), "-o", str(picture), "--color", color, "--forces", "--before-after"]) == 0
+    assert main(["plot", str(tell(result)), "-o", str(picture), "--color", color, "--forces", "--before-after"]) == 0
     pixels = matplotlib.image.imread(picture)[..., :3]
     assert pixels.shape[1] > 600 and pixels.std() > 0.05
 
@@ -28,22 +39,22 @@ def test_every_colouring_makes_a_picture(result, tmp_path, color):
 def test_colours_follow_displacement_and_the_bar_says_its_unit(result):
     run = talus_lab.open(result)
     figure = plot.picture(run)
-    free = next(c for c in figure.axes[0].collections if isinstance(c, PolyCollection))
-    square, first_part, second_part = free.get_facecolors()
-    assert (first_part == second_part).all() and (square != first_part).any()
-    assert figure.axes[-1].get_ylabel() == "displacement in mm"
-    assert figure.axes[-1].get_ylim() == pytest.approx((0, 400))
+    faces = dict(zip([len(path.vertices) for path in drawn(figure)[0].get_paths()], drawn(figure)[0].get_facecolors()))
+    assert sorted(faces) == [5, 10]  # rings of four corners: the square, and in one path the two parts of the L
+    assert sum(faces[5][:3]) < sum(faces[10][:3])  # what has moved is darker
+    assert figure.axes[-1].get_xlabel() == "displacement in mm"  # below, for the scene is low
+    assert figure.axes[-1].get_xlim() == pytest.approx((0, 400))
 
 
 def test_edges_inside_a_block_are_not_drawn(result):
-    edges = lines(plot.picture(talus_lab.open(result)))[0]
-    assert len(edges.get_segments()) == 16 - 2
+    edges = drawn(plot.picture(talus_lab.open(result)))[2]
+    assert sum(len(path.vertices) for path in edges.get_paths()) == 2 * (16 - 2)
 
 
 def test_joint_states_are_drawn_along_the_joint_and_named(result):
     figure = plot.picture(talus_lab.open(result), color="joint_state")
     assert legend(figure) == ["held", "sliding (1)"]  # the open one has no length
-    sliding = lines(figure)[1].get_segments()[0] - ORIGIN
+    sliding = lines(figure)[0].get_segments()[0] - ORIGIN
     # The square stands on -0.1 .. 0.9; the centre of pressure, at 0.1, is not the middle of the joint.
     assert np.sort(sliding[:, 0]) == pytest.approx([-0.1, 0.9]) and sliding[:, 1] == pytest.approx([0, 0])
 
@@ -100,12 +111,89 @@ def test_a_scene_shows_materials_supports_and_joints(result):
 
 
 def test_units_read_well():
-    assert layers.quantity(0.0025, "m") == "2.5 mm"
-    assert layers.quantity(1.2345e6, "N") == "1.23 MN"
-    assert layers.quantity(1500, "m") == "1500 m"
-    assert layers.quantity(0.999996, "s", 4) == "1 s"
-    assert layers.quantity(0.25, "s") == "0.25 s" and layers.quantity(0.025, "s") == "25 ms"
-    assert layers.quantity(0, "s") == "0 s"
+    assert units.quantity(0.0025, "m") == "2.5 mm"
+    assert units.quantity(1.2345e6, "N") == "1.23 MN"
+    assert units.quantity(1500, "m") == "1500 m"
+    assert units.quantity(0.999996, "s", 4) == "1 s"
+    assert units.quantity(0.25, "s") == "0.25 s" and units.quantity(0.025, "s") == "25 ms"
+    assert units.quantity(0, "s") == "0 s"
+
+
+def test_a_block_pressed_from_both_sides_has_that_stress():
+    run = SimpleNamespace(
+        block_count=2, blocks={"held": np.array([0, 1]), "area": np.array([6.0, 1.0])}, removed=lambda frame: np.zeros(2, bool),
+        position=lambda frame: np.array([[10.0, 5.0], [0.0, 0.0]]),
+        contacts=lambda frame: {"block_a": np.array([1, 0, 1, 1]), "block_b": np.array([0, 1, 0, 0]), "x": np.array([8.5, 11.5, 10, 10]),
+                                "y": np.array([5.0, 5, 4, 6]), "nx": np.array([1.0, 1, 0, 0]), "ny": np.array([0.0, 0, 1, -1]),
+                                "normal_force": np.array([40.0, 40, 0, 0]), "shear_force": np.array([0.0, 0, -30, -30])})
+    found = stress.block_stress(run)
+    # 3 m wide, 2 m high: 40 N on the 2 m high sides press with 20 Pa. 30 N to the right on the 3 m wide base, whose outward normal n is
+    # (0, -1): t = -sigma n = 10 Pa, sigma_xy = 10 Pa. Nothing balances the moment, so the symmetric part has half of it.
+    assert found[0] == pytest.approx(np.array([[20, 5], [5, 0]])) and np.isnan(found[1]).all()
+
+
+def test_principal_stresses_of_pure_shear_lie_at_45_degrees():
+    major, minor, angle = stress.principal(np.array([[[3.0, 2.0], [2.0, 3.0]], [[1.0, 0.0], [0.0, -4.0]]]))
+    assert major == pytest.approx([5, 1]) and minor == pytest.approx([1, -4]) and angle == pytest.approx([np.pi / 4, 0])
+
+
+def test_crosses_are_as_long_as_the_stress_and_say_how_large_it_is(result):
+    figure = plot.picture(talus_lab.open(result), color="none", stress=True)
+    assert legend(figure)[1].startswith("compression, largest 1")  # 20 N below the square: 20 Pa x 0.5 of its height, and some shear
+
+
+def test_where_blocks_stood_is_dashed_around_each_of_a_few(result):
+    figure = plot.picture(talus_lab.open(result), outline=True)
+    before = lines(figure)[-1].get_segments()
+    assert len(before) == 4 + 6 and legend(figure)[-1] == "at t = 0 s"
+    assert np.concatenate(before).min(axis=0) - ORIGIN == pytest.approx([-0.5, 0.0])
+
+
+def test_the_outline_of_touching_blocks_is_one_line_and_holes_show():
+    square = np.array([[0.0, 0], [1, 0], [1, 1], [0, 1]])
+    around = [square + [x, y] for x in range(3) for y in range(3) if (x, y) != (1, 1)]
+    outer, hole = sorted(silhouette(around, 0.1), key=len, reverse=True)
+    assert outer.min() == pytest.approx(0, abs=0.005) and outer.max() == pytest.approx(3, abs=0.005)
+    assert hole.min() == pytest.approx(1, abs=0.005) and hole.max() == pytest.approx(2, abs=0.005)
+    assert len(silhouette(around, 2.0)) == 1
+
+
+def test_histories_have_a_panel_for_each_unit_and_break_where_the_clock_goes_back(result):
+    figure = curves.history(talus_lab.open(result), "slide")
+    assert [ax.get_ylabel() for ax in figure.axes] == ["x in mm", "a in s"] and figure.axes[-1].get_xlabel() == "time in s"
+    assert figure.axes[0].get_lines()[0].get_ydata() == pytest.approx([0, 100, 400])
+    with h5py.File(result, "a") as file:
+        file["talus/histories/slide/time"][2] = 0.1
+    assert np.isnan(curves.history(talus_lab.open(result), "slide").axes[0].get_lines()[0].get_xdata()).tolist() == [False] * 2 + [True, False]
+
+
+def test_energies_that_are_nothing_are_left_out(result):
+    with h5py.File(result, "a") as file:
+        file["talus/energies/friction"], file["talus/energies/total"] = np.array([0.0, 1e-9, 1e-9]), np.zeros(3)
+    assert legend(curves.energies(talus_lab.open(result))) == ["kinetic", "total"]
+
+
+@pytest.mark.parametrize("options, complaint", [
+    (["--color", "sped"], "did you mean speed"), (["--history", "slid"], "did you mean slide"), (["--frame", "7"], "no frame 7"),
+    (["--history", "slide", "--columns", "b"], "no column b"), (["--width", "1"], "from 4 to 100"), (["--dpi", "9"], "from 30"),
+    (["--color", "mechanism"], "has no verdict"), (["-o", "nowhere/x.png"], "there is no folder nowhere")])
+def test_what_is_not_there_is_told_in_one_line(result, capsys, options, complaint):
+    assert main(["plot", str(result), *options]) == 2
+    error = capsys.readouterr().err
+    assert complaint in error and len(error.splitlines()) == 1
+
+
+@pytest.mark.parametrize("suffix, begins", [(".pdf", b"%PDF"), (".svg", b"<?xml"), (".PNG", b"\x89PNG")])
+def test_pictures_are_written_in_the_format_of_their_name(result, tmp_path, suffix, begins):
+    assert main(["plot", str(result), "--energies", "-o", str(tmp_path / f"x{suffix}")]) == 0
+    assert (tmp_path / f"x{suffix}").read_bytes().startswith(begins) and len(list(tmp_path.glob("x*"))) == 1
+
+
+def test_help_names_every_field_and_loads_no_library(capsys):
+    code = "import sys; from talus_lab.cli import main\ntry: main(['plot', '--help'])\nexcept SystemExit: pass\n" \
+           "assert not {'numpy', 'matplotlib', 'h5py'} & set(sys.modules)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert all(name in done.stdout.replace("\n", " ") for name in colors.COLORS)
 
 
 def test_faults_of_the_user_are_one_line_and_code_2(result, tmp_path, capsys):

@@ -12,7 +12,7 @@ from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormat
 
 from talus_lab.bench.config import Chart, Config
 from talus_lab.bench.select import Rows, series, words
-from talus_lab.plot import STYLE
+from talus_lab.style import STYLE
 from talus_lab.study.picture import bare, finish, line
 
 # colour, mark, line

@@ -11,7 +11,7 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from talus_lab.chart.config import LARGEST, Chart, Config
 from talus_lab.chart.fronts import Rows, confirmed, front, points
-from talus_lab.plot import STYLE
+from talus_lab.style import STYLE
 from talus_lab.study.picture import bare, finish, line
 
 # colour, mark, line: ours drawn through, other programs dashed

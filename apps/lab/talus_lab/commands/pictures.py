@@ -15,38 +15,69 @@ if TYPE_CHECKING:
 
 
 def add(commands: argparse._SubParsersAction) -> None:
-    p = commands.add_parser("plot", help="draw a frame of a result, or a scenario that has not run")
+    p = commands.add_parser("plot", help="draw a frame, a history or the energies of a result, or a scenario that has not run")
     p.add_argument("file", type=Path, metavar="OUT.h5|SCENARIO.yaml")
-    p.add_argument("-o", "--output", type=Path, metavar="FILE", help="picture, .png or .svg (default: beside the file)")
+    picture_options(p, "picture, .png, .svg or .pdf (default: beside the file, .png)")
+    frame_options(p)
+    p.add_argument("--before-after", action="store_true", help="the first frame beside the chosen one")
+    curve = p.add_mutually_exclusive_group()
+    curve.add_argument("--history", metavar="NAME", help="a history over time in place of a frame")
+    curve.add_argument("--energies", action="store_true", help="the energy ledger over time in place of a frame")
+    p.add_argument("--columns", default="", metavar="A,B", help="of the history (default: all)")
     which = p.add_mutually_exclusive_group()
     which.add_argument("--frame", type=int, default=-1, metavar="K", help="from 0; -1 is the last (default)")
     which.add_argument("--time", type=float, metavar="T", help="the frame nearest to this time in s")
-    p.add_argument("--color", choices=("displacement", "velocity", "rotation", "joint_state", "material", "none"), default="displacement", help="what colours the blocks (default: displacement)")
-    p.add_argument("--forces", action="store_true", help="contact forces, lines as wide as the force is large")
-    p.add_argument("--joints", action="store_true", help="joints coloured by state")
-    p.add_argument("--before-after", action="store_true", help="the first frame beside the chosen one")
-    p.add_argument("--exaggerate", type=float, default=1.0, metavar="X", help="draw movements X times as large")
     p.set_defaults(command=plot_command)
 
 
+def picture_options(p: argparse.ArgumentParser, output: str) -> None:
+    p.add_argument("-o", "--output", type=Path, metavar="FILE", help=output)
+    p.add_argument("--width", type=float, default=12.0, metavar="CM", help="width in print; letters keep their size (default: 12)")
+    p.add_argument("--dpi", type=int, help="dots per inch (default: 250; 120 for animations)")
+
+
+def frame_options(p: argparse.ArgumentParser) -> None:
+    p.add_argument("--color", default="displacement", metavar="FIELD",
+                   help="what colours the blocks: displacement (default), displacement_x, displacement_y, speed, rotation, stress_major, "
+                   "stress_minor, unbalanced_force, area, mechanism, material, region, joint_state or none")
+    p.add_argument("--forces", action="store_true", help="contact forces, lines as wide as the force is large")
+    p.add_argument("--stress", action="store_true", help="principal stresses of the blocks as crosses")
+    p.add_argument("--joints", action="store_true", help="joints coloured by state")
+    p.add_argument("--outline", action="store_true", help="where the blocks stood in the first frame, dashed")
+    p.add_argument("--exaggerate", type=float, default=1.0, metavar="X", help="draw movements X times as large")
+
+
 def plot_command(options: argparse.Namespace) -> int:
-    from talus_lab import plot
+    from talus_lab import curves, plot, style
     from talus_lab.run import open_run
 
     given: Path = options.file
-    output: Path = options.output or given.with_suffix(".png")
-    if output.suffix.lower() not in (".png", ".svg"):
-        raise ResultError(f"{output}: pictures are written as .png or .svg")
+    word = options.history or ("energies" if options.energies else "")
+    output: Path = options.output or given.with_name(f"{given.stem}{'_' if word else ''}{word}.png")
+    style.check_format(output)
+    check_size(options)
     if given.suffix.lower() in (".yaml", ".yml"):
         with tempfile.TemporaryDirectory() as folder:
-            figure = plot.scene(check_geometry(given, Path(folder) / "geometry.h5"))
+            figure = plot.scene(check_geometry(given, Path(folder) / "geometry.h5"), options.width)
+    elif options.history:
+        figure = curves.history(open_run(given), options.history, list(filter(None, options.columns.split(","))), options.width)
+    elif options.energies:
+        figure = curves.energies(open_run(given), options.width)
     else:
         run = open_run(given)
         frame = options.frame if options.time is None else run.frame_at(options.time)
-        figure = plot.picture(run, frame, options.color, options.forces, options.joints, options.before_after, options.exaggerate)
-    figure.savefig(output)
+        figure = plot.picture(run, frame, options.color, options.forces, options.joints, options.before_after, options.exaggerate,
+                              options.stress, options.outline, options.width)
+    style.save(figure, output, options.dpi or style.DPI)
     print(output)
     return 0
+
+
+def check_size(options: argparse.Namespace) -> None:
+    if not 4 <= options.width <= 100:
+        raise ResultError(f"--width {options.width:g}: is in cm, from 4 to 100")
+    if options.dpi is not None and not 30 <= options.dpi <= 1200:
+        raise ResultError(f"--dpi {options.dpi}: is from 30 to 1200")
 
 
 def check_geometry(scenario: Path, result: Path) -> Run:
