@@ -10,6 +10,7 @@ from matplotlib.colors import Normalize, to_rgba
 from matplotlib.patches import Patch
 
 from talus_lab import fields
+from talus_lab.errors import ResultError, nearest
 from talus_lab.fields import Field, Kinds
 from talus_lab.layers import block_size
 from talus_lab.run import Run
@@ -48,6 +49,14 @@ class Scale:
         faces = ScalarMappable(self.norm, self.cmap).to_rgba(values * self.factor)
         faces[np.isnan(values)] = to_rgba(PLAIN)
         return faces
+
+
+def check_color(run: Run, color: str, contacts: bool) -> None:
+    """Raises ResultError if blocks cannot be coloured by `color`, or if contacts are wanted and not there."""
+    if color not in COLORS:
+        raise ResultError(f"nothing is coloured by {color}{nearest(color, COLORS)}")
+    if contacts and not run.contacts(-1):
+        raise ResultError(f"{run.path}: has no contacts; the scenario says record: {{contacts: false}}")
 
 
 def block_colors(run: Run, frame: int, color: str) -> BlockColors:

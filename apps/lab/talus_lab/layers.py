@@ -187,14 +187,21 @@ def shown_state(contacts) -> np.ndarray:
     return np.where(light & (contacts["state"] == sliding), slipped, contacts["state"])
 
 
-def draw_forces(ax: Axes, run: Run, geometry: Geometry) -> list[Line2D]:
-    """Contact forces as lines through the point where they act, along the force, as wide as the force is large."""
+def largest_force(run: Run, frame: int) -> float:
+    """N per m, of the contacts of a frame."""
+    contacts = run.contacts(frame)
+    return float(np.hypot(*contact_force(contacts).T).max(initial=0.0)) if contacts else 0.0
+
+
+def draw_forces(ax: Axes, run: Run, geometry: Geometry, largest: float | None = None) -> list[Line2D]:
+    """Contact forces as lines through the point where they act, along the force, as wide as the force is large. largest: N per m, that
+    of the widest line; default: the largest of this frame."""
     contacts = run.contacts(geometry.frame)
     if not contacts or not len(contacts["x"]):
         return []
     force = contact_force(contacts)
     size = np.hypot(*force.T)
-    largest = size.max()
+    largest = largest or size.max()
     if largest == 0:
         return []
     handles, widest = [], width(ax, run, 0.2, 1.0, 5.0)
@@ -211,17 +218,24 @@ def draw_forces(ax: Axes, run: Run, geometry: Geometry) -> list[Line2D]:
     return handles
 
 
-def draw_stress(ax: Axes, run: Run, geometry: Geometry) -> list[Line2D]:
+def largest_stress(run: Run, frame: int) -> float:
+    """Pa, of the principal stresses of the blocks of a frame, but for the largest 0.1 %."""
+    size = np.abs(np.concatenate(principal(block_stress(run, frame))[:2]))
+    return float(np.percentile(size[~np.isnan(size)], 99.9)) if not np.isnan(size).all() else 0.0
+
+
+def draw_stress(ax: Axes, run: Run, geometry: Geometry, largest: float | None = None) -> list[Line2D]:
     """Principal stresses of each block as a cross at its centroid, arms as long as the stress is large, tension in another
-    colour. The largest tenth of a per cent is cut, so that a block that is nipped between two corners does not shrink all others."""
+    colour. largest: Pa, that of the longest arm; default: that of this frame, but for a tenth of a per cent of the blocks, so that one
+    that is nipped between two corners does not shrink all others."""
     stress = block_stress(run, geometry.frame)
     known = np.flatnonzero(~np.isnan(stress[:, 0, 0]))
     major, minor, angle = principal(stress[known])
-    if not len(known) or max(np.abs(major).max(), np.abs(minor).max()) == 0:
-        return []
     size, turned = np.concatenate([major, minor]), np.concatenate([angle, angle + np.pi / 2])
     turned = turned + np.tile((geometry.angle - run.angle(geometry.frame))[known], 2)
-    longest = float(np.percentile(np.abs(size), 99.9))
+    longest = largest or largest_stress(run, geometry.frame)
+    if longest == 0:
+        return []
     arm = np.clip(np.abs(size) / longest, 0, 1) * 0.55 * np.tile(np.sqrt(run.blocks["area"][known]), 2)
     half = np.column_stack([np.cos(turned), np.sin(turned)]) * arm[:, None]
     middle, handles, wide = np.tile(geometry.position[known], (2, 1)), [], width(ax, run, 0.05, 0.35, 1.4)

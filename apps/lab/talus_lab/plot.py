@@ -12,8 +12,7 @@ from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.patches import Patch
 
 from talus_lab import layers
-from talus_lab.colors import COLORS, BlockColors, block_colors, plain
-from talus_lab.errors import ResultError, nearest
+from talus_lab.colors import BlockColors, block_colors, check_color, plain
 from talus_lab.layers import Geometry
 from talus_lab.run import Run
 from talus_lab.style import CM, DPI, STYLE, WIDTH_CM
@@ -32,11 +31,8 @@ def picture(run: Run, frame: int = -1, color: str = "displacement", forces: bool
     joints: joints coloured by state. outline: where the free blocks stood in the first frame. exaggerate: movements since the start are
     drawn this many times as large. Raises ResultError for what the result does not have.
     """
-    if color not in COLORS:
-        raise ResultError(f"nothing is coloured by {color}{nearest(color, COLORS)}")
     joints = joints or color == "joint_state"
-    if (forces or joints or stress) and not run.contacts(frame):
-        raise ResultError(f"{run.path}: has no contacts; the scenario says record: {{contacts: false}}")
+    check_color(run, color, forces or joints or stress)
     with matplotlib.rc_context(STYLE):
         start, now = Geometry(run, 0, exaggerate), Geometry(run, frame, exaggerate)
         geometries = [start, now] if before_after else [now]

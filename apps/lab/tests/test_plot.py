@@ -31,9 +31,9 @@ def legend(figure):
 @pytest.mark.parametrize("color", colors.COLORS)
 def test_every_colouring_makes_a_picture(result, tmp_path, color):
     picture = tmp_path / f"{color}.png"
-    assert main(["plot", str(tell(result)), "-o", str(picture), "--color", color, "--forces", "--before-after"]) == 0
+    assert main(["plot", str(tell(result)), "-o", str(picture), "--color", color, "--forces", "--before-after", "--dpi", "60"]) == 0
     pixels = matplotlib.image.imread(picture)[..., :3]
-    assert pixels.shape[1] > 600 and pixels.std() > 0.05
+    assert pixels.shape[1] == pytest.approx(60 * 12 / 2.54, abs=1) and pixels.std() > 0.05
 
 
 def test_colours_follow_displacement_and_the_bar_says_its_unit(result):

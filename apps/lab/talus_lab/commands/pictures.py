@@ -1,4 +1,4 @@
-"""talus-lab plot."""
+"""talus-lab plot, animate."""
 
 from __future__ import annotations
 
@@ -30,10 +30,21 @@ def add(commands: argparse._SubParsersAction) -> None:
     p.set_defaults(command=plot_command)
 
 
+    a = commands.add_parser("animate", help="make a moving picture of a result, .mp4 if ffmpeg is there, else .gif")
+    a.add_argument("file", type=Path, metavar="OUT.h5")
+    picture_options(a, "animation, .mp4 or .gif (default: beside the file)")
+    frame_options(a)
+    a.add_argument("--from", type=float, dest="begin", metavar="T", help="first frame: the nearest to this time in s")
+    a.add_argument("--to", type=float, dest="end", metavar="T", help="last frame: the nearest to this time in s")
+    a.add_argument("--every", type=int, default=1, metavar="N", help="only every N-th frame")
+    a.add_argument("--rate", type=float, default=10.0, metavar="N", help="frames per second (default: 10)")
+    a.set_defaults(command=animate_command)
+
+
 def picture_options(p: argparse.ArgumentParser, output: str) -> None:
     p.add_argument("-o", "--output", type=Path, metavar="FILE", help=output)
     p.add_argument("--width", type=float, default=12.0, metavar="CM", help="width in print; letters keep their size (default: 12)")
-    p.add_argument("--dpi", type=int, help="dots per inch (default: 250; 120 for animations)")
+    p.add_argument("--dpi", type=int, help="dots per inch (default: 250; 200 for animations)")
 
 
 def frame_options(p: argparse.ArgumentParser) -> None:
@@ -69,6 +80,26 @@ def plot_command(options: argparse.Namespace) -> int:
         figure = plot.picture(run, frame, options.color, options.forces, options.joints, options.before_after, options.exaggerate,
                               options.stress, options.outline, options.width)
     style.save(figure, output, options.dpi or style.DPI)
+    print(output)
+    return 0
+
+
+def animate_command(options: argparse.Namespace) -> int:
+    from talus_lab import movie
+    from talus_lab.animate import DPI, Shown, animate
+    from talus_lab.commands.progress import progress
+    from talus_lab.run import open_run
+
+    output: Path = options.output or options.file.with_suffix(movie.default_suffix())
+    movie.check(output)
+    check_size(options)
+    if options.every < 1 or not 0.1 <= options.rate <= 50:
+        raise ResultError("--every: is 1 or more; --rate: is from 0.1 to 50 frames per second")
+    run = open_run(options.file)
+    first = 0 if options.begin is None else run.frame_at(options.begin)
+    last = run.frame_count - 1 if options.end is None else run.frame_at(options.end)
+    shown = Shown(options.color, options.forces, options.joints, options.stress, options.outline, options.exaggerate)
+    animate(run, output, shown, range(first, last + 1, options.every), options.rate, options.width, options.dpi or DPI, progress("frame"))
     print(output)
     return 0
 
