@@ -62,6 +62,9 @@ struct QueryArguments {
 };
 int query_command(const QueryArguments& arguments);
 
+/// Reads lists of overrides from standard input, one in a line.
+int resolve_command(const std::string& scenario);
+
 int info_command(const std::string& results);
 int export_command(const std::string& results, const std::string& folder);
 

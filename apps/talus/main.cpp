@@ -100,6 +100,12 @@ int program(int argc, char** argv) {
     add_overrides(*check_app, check.overrides);
     check_app->callback([&] { command = [&] { return check_command(check); }; });
 
+    std::string scenario;
+    CLI::App* resolve_app = app.add_subcommand(
+        "resolve", "the hash of each of many variants: lists of PATH=VALUE from standard input, one in a line");
+    resolve_app->add_option("scenario", scenario, "scenario file (YAML)")->required();
+    resolve_app->callback([&] { command = [&] { return resolve_command(scenario); }; });
+
     std::string results, folder = ".";
     int threads = 0;
     CLI::App* resume_app = app.add_subcommand("resume", "go on with a run that was interrupted, bit for bit");

@@ -135,14 +135,22 @@ Scenario make_scenario(const Input& input, Value tree, std::vector<Fault>& fault
     return scenario;
 }
 
-/// The tree with overrides, which are noted at the end of the text.
-Value read_tree(Input& input, const std::vector<std::string>& overrides, std::vector<Fault>& faults) {
+Value parse(const Input& input, std::vector<Fault>& faults) {
     Value tree = parse_yaml(input.text, input.file, faults);
     if (tree.is_null() && !faults.empty()) report(faults);  // a syntax error hides all the rest
+    return tree;
+}
+
+/// The tree with overrides, which are noted at the end of the text.
+Value changed(Value tree, Input& input, const std::vector<std::string>& overrides, std::vector<Fault>& faults) {
     for (const Override& change : parse_overrides(overrides, faults))
         apply(change, spec::scenario(), input.file, tree, faults);
     for (const std::string& text : overrides) input.text += "\n# --set " + text;
     return tree;
+}
+
+Value read_tree(Input& input, const std::vector<std::string>& overrides, std::vector<Fault>& faults) {
+    return changed(parse(input, faults), input, overrides, faults);
 }
 
 Value with_row(const Value& tree, const Value& row, const std::string& path, const Input& input,
@@ -203,18 +211,41 @@ std::vector<Case> cases_of(Input input, const std::vector<std::string>& override
     return all;
 }
 
-Scenario scenario_of(Input input, const std::vector<std::string>& overrides) {
-    std::vector<Fault> faults;
-    const Value tree = read_tree(input, overrides, faults);
+Scenario scenario_of(const Input& input, const Value& tree, std::vector<Fault>& faults) {
     Scenario scenario = make_scenario(input, tree, faults);
     if (!faults.empty()) report(std::move(faults));
     return scenario;
+}
+
+Scenario scenario_of(Input input, const std::vector<std::string>& overrides) {
+    std::vector<Fault> faults;
+    const Value tree = read_tree(input, overrides, faults);
+    return scenario_of(input, tree, faults);
 }
 
 }  // namespace
 
 Scenario read_scenario(const std::string& path, const std::vector<std::string>& overrides) {
     return scenario_of(load(path), overrides);
+}
+
+struct ScenarioFile::Content {
+    Input input;
+    std::vector<Fault> faults;  // that do not keep the rest from being looked at
+    Value tree;
+};
+
+ScenarioFile::ScenarioFile(const std::string& path) {
+    Content content{load(path), {}, {}};
+    content.tree = parse(content.input, content.faults);
+    content_ = std::make_shared<const Content>(std::move(content));
+}
+
+Scenario ScenarioFile::with(const std::vector<std::string>& overrides) const {
+    Input input = content_->input;
+    std::vector<Fault> faults = content_->faults;
+    const Value tree = changed(content_->tree, input, overrides, faults);
+    return scenario_of(input, tree, faults);
 }
 
 std::vector<Case> read_cases(const std::string& path, const std::vector<std::string>& overrides) {

@@ -3,6 +3,7 @@
 
 #include "scenario/scenario.hpp"
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,19 @@ namespace talus {
 /// Reads a scenario file. Overrides are `path=value`, e.g. joints.bedding.friction_angle_deg=25, applied before anything
 /// else. Throws InputError with all faults, by line. `cases` are looked at and left out.
 Scenario read_scenario(const std::string& path, const std::vector<std::string>& overrides = {});
+
+/// A file that is read once, and the scenarios that sets of overrides make of it.
+class ScenarioFile {
+public:
+    /// Throws InputError if the file cannot be read or is no YAML.
+    explicit ScenarioFile(const std::string& path);
+    /// What read_scenario gives and throws.
+    Scenario with(const std::vector<std::string>& overrides) const;
+
+private:
+    struct Content;
+    std::shared_ptr<const Content> content_;
+};
 
 struct Case {
     std::string name;  // empty: the file has no cases
