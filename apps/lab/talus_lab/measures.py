@@ -129,15 +129,17 @@ def block_at(run: Run, point: Sequence[float]) -> int:
 
 # Histories, energies, the run itself
 def history(run: Run, name: str, column: str | None = None, at: str = "end") -> float:
-    """In the unit of the column: a value of a history. column: may be left out if there is but one beside the time.
-    at: end | start | max | min | mean | largest (of the absolute values)."""
-    table = run.history(name)
-    columns = [word for word in table if word != "time"]
-    if column is None and len(columns) == 1:
-        column = columns[0]
-    if column not in table:
+    """In the unit of the column: a value of a history. column: may be left out if there is but one beside the time; `displacement.x` may
+    stand for `displacement.x of block`. at: end | start | max | min | mean | largest (of the absolute values)."""
+    return _at(run.history(name)[_column(run, name, column)], at)
+
+
+def _column(run: Run, name: str, column: str | None) -> str:
+    columns = [word for word in run.history(name) if word != "time"]
+    meant = [word for word in columns if column is None or word == column or word.startswith(f"{column} ")]
+    if len(meant) != 1:
         raise ResultError(f"{run.path}: history {name}: no column {column}{nearest(column, columns)}")
-    return _at(table[column], at)
+    return meant[0]
 
 
 def energy(run: Run, name: str = "kinetic", at: str = "end") -> float:
@@ -225,5 +227,5 @@ def evaluate(run: Run, name: str, /, **options: Any) -> Any:
 def unit(run: Run, name: str, /, **options: Any) -> str:
     """The unit of a measure; that of a history is what its column says."""
     if name == "history":
-        return run.unit(f"histories/{options['name']}/{options.get('column') or next(c for c in run.history(options['name']) if c != 'time')}")
+        return run.unit(f"histories/{options['name']}/{_column(run, options['name'], options.get('column'))}")
     return MEASURES[name].unit

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import MISSING, fields
 from pathlib import Path
-from typing import Any
+from typing import Any, Mapping
 
 import yaml
 
@@ -23,10 +23,36 @@ def read_yaml(path: Path) -> dict:
     return given if isinstance(given, dict) else {}
 
 
-def report(path: Path, faults: list[str]) -> None:
-    """Raises ResultError with every fault, one per line, if there are any."""
+def read_lines(path: Path) -> dict[str, int]:
+    """Line of every key of a file that read_yaml has read: `scenes.arch.errors[0]` -> 7."""
+    lines: dict[str, int] = {}
+
+    def look(node: yaml.Node | None, where: str) -> None:
+        if isinstance(node, yaml.MappingNode):
+            for key, value in node.value:
+                inner = f"{where}.{key.value}" if where else str(key.value)
+                lines[inner] = key.start_mark.line + 1
+                look(value, inner)
+        elif isinstance(node, yaml.SequenceNode):
+            for k, item in enumerate(node.value):
+                lines[f"{where}[{k}]"] = item.start_mark.line + 1
+                look(item, f"{where}[{k}]")
+
+    look(yaml.compose(path.read_text(encoding="utf-8"), yaml.SafeLoader), "")
+    return lines
+
+
+def report(path: Path, faults: list[str], lines: Mapping[str, int] = {}) -> None:
+    """Raises ResultError with every fault, one per line, if there are any; behind the file the line of what a fault begins with."""
     if faults:
-        raise ResultError("\n".join(f"{path}: {fault}" for fault in faults))
+        raise ResultError("\n".join(f"{path}{_line(fault, lines)} {fault}" if lines else f"{path}: {fault}" for fault in faults))
+
+
+def _line(fault: str, lines: Mapping[str, int]) -> str:
+    where = fault.partition(": ")[0]
+    while where and where not in lines:
+        where = where[: max(where.rfind("."), where.rfind("["), 0)]
+    return f":{lines[where]}" if where else ":"
 
 
 def section(kind: type, given: object, where: str, faults: list[str]) -> dict:
@@ -43,16 +69,17 @@ def entry(kind: type, given: object, where: str, faults: list[str]) -> Any:
         faults.append(f"{where}: is not a mapping")
         return None
     before = len(faults)
-    unknown_keys(given, [f.name for f in fields(kind)], where + ".", faults)
-    for f in fields(kind):
-        if f.name not in given:
+    names = {f.name.rstrip("_"): f for f in fields(kind)}  # `from_` is the key `from`
+    unknown_keys(given, list(names), where + ".", faults)
+    for name, f in names.items():
+        if name not in given:
             if f.default is MISSING and f.default_factory is MISSING:
-                faults.append(f"{where}.{f.name}: is missing")
+                faults.append(f"{where}.{name}: is missing")
             continue
         expected, words = TYPES[f.type]
-        if not isinstance(given[f.name], expected) or (f.type in ("int", "float") and isinstance(given[f.name], bool)):
-            faults.append(f"{where}.{f.name}: is not {words}")
-    return kind(**given) if len(faults) == before else None
+        if not isinstance(given[name], expected) or (f.type in ("int", "float") and isinstance(given[name], bool)):
+            faults.append(f"{where}.{name}: is not {words}")
+    return kind(**{names[name].name: value for name, value in given.items()}) if len(faults) == before else None
 
 
 def top(given: dict, known: list[str], faults: list[str], needed: list[str] | None = None) -> None:

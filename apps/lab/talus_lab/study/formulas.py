@@ -6,12 +6,16 @@ import ast
 import math
 import operator
 import re
-from typing import Callable, Mapping
+from typing import Any, Callable, Mapping
 
 OPERATIONS = {ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv, ast.Pow: operator.pow,
               ast.USub: operator.neg}
 FUNCTIONS = {"sqrt": math.sqrt, "min": min, "max": max, "round": round, "sin_deg": lambda x: math.sin(math.radians(x)),
              "cos_deg": lambda x: math.cos(math.radians(x)), "tan_deg": lambda x: math.tan(math.radians(x))}
+
+
+COMPARISONS = {ast.Lt: operator.lt, ast.LtE: operator.le, ast.Gt: operator.gt, ast.GtE: operator.ge, ast.Eq: operator.eq, ast.NotEq: operator.ne}
+LOGIC = {ast.And: all, ast.Or: any}
 
 
 class FormulaError(ValueError):
@@ -29,6 +33,30 @@ def evaluate(formula: str, values: Mapping[str, float], more: Mapping[str, Calla
         return _value(ast.parse(formula.strip(), mode="eval").body, values, {**FUNCTIONS, **more})
     except (SyntaxError, ArithmeticError, ValueError, TypeError) as error:
         raise FormulaError(f"{{{formula}}}: {getattr(error, 'msg', error)}") from None
+
+
+def holds(condition: str, values: Mapping[str, Any]) -> bool:
+    """Of a condition such as `friction_deg <= dip_deg + 5 and rock == 'granite'`."""
+    try:
+        return _holds(ast.parse(condition.strip(), mode="eval").body, values)
+    except (SyntaxError, ArithmeticError, ValueError, TypeError) as error:
+        raise FormulaError(f"{condition}: {getattr(error, 'msg', error)}") from None
+
+
+def _holds(node: ast.expr, values: Mapping[str, Any]) -> bool:
+    match node:
+        case ast.BoolOp():
+            return LOGIC[type(node.op)](_holds(part, values) for part in node.values)
+        case ast.UnaryOp(op=ast.Not()):
+            return not _holds(node.operand, values)
+        case ast.Compare() if all(type(op) in COMPARISONS for op in node.ops):
+            sides = [_side(side, values) for side in (node.left, *node.comparators)]
+            return all(COMPARISONS[type(op)](a, b) for op, a, b in zip(node.ops, sides, sides[1:]))
+    raise ValueError("a condition compares formulas by < <= > >= == !=, joined by and, or, not")
+
+
+def _side(node: ast.expr, values: Mapping[str, Any]) -> Any:
+    return node.value if isinstance(node, ast.Constant) and isinstance(node.value, str) else _value(node, values, FUNCTIONS)
 
 
 def _value(node: ast.expr, values: Mapping[str, float], functions: Mapping[str, Callable[..., float]]) -> float:

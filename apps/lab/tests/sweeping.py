@@ -1,0 +1,87 @@
+"""What the tests of sweeps share: a block on an incline that takes a few milliseconds, and a talus that says when it was asked to run."""
+
+from __future__ import annotations
+
+import csv
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+import yaml
+
+from talus_lab.errors import ResultError
+from talus_lab.program import find_talus
+
+SCENARIO = """\
+title: Block on an incline
+gravity: [0, -9.81]
+materials: {rock: {density: 2500}}
+joints: {base: {normal_stiffness: 1e10, shear_stiffness: 5e9, friction_angle_deg: 20}}
+blocks:
+  - {name: plane, held: true, outline: [[0, 0], [10, 0], [10, 5]]}
+  - {name: block, outline: [[6, 3], [8, 4], [7.5, 5], [5.5, 4]]}
+run: {until: {time: 0.05}}
+record: {frames: {count: 1}, history: [{name: block, point: [6.75, 4], quantity: displacement, component: magnitude}]}
+"""
+# Stands before talus: notes every run and the folder of its case, then does what the file `first` says, once, or `always`.
+STAND_IN = """\
+#!/bin/sh
+if [ "$1" = run ]; then
+    echo "$4" >> "{here}/runs"
+    . "{here}/always"
+fi
+exec "{talus}" "$@"
+"""
+
+
+def config(folder: Path, **changes: object) -> Path:
+    """A sweep of nine cases with these keys of its config changed; None takes one away."""
+    given = {"scenario": "incline.yaml", "output": "out",
+             "parameters": {"friction_deg": {"set": "joints.base.friction_angle_deg", "values": [10, 20, 30]},
+                            "density": {"set": "materials.rock.density", "from": 2400, "to": 2600, "step": 100, "unit": "kg/m3"}},
+             "measures": ["max_displacement", {"name": "way", "history": "block", "at": "max"}]} | changes
+    (folder / "incline.yaml").write_text(SCENARIO)
+    path = folder / "sweep.yaml"
+    path.write_text(yaml.safe_dump({key: value for key, value in given.items() if value is not None}, sort_keys=False))
+    return path
+
+
+def stand_in(folder: Path, monkeypatch: pytest.MonkeyPatch, always: str = "") -> Path:
+    """Puts a program that notes its runs in the place of talus."""
+    try:
+        talus = find_talus()
+    except ResultError as error:
+        pytest.skip(str(error))
+    here = folder / "bin"
+    here.mkdir()
+    (here / "always").write_text(always + "\n")
+    program = here / "talus"
+    program.write_text(STAND_IN.format(here=here, talus=Path(talus).resolve()))
+    program.chmod(0o755)
+    monkeypatch.setenv("TALUS", str(program))
+    return here
+
+
+def runs(here: Path) -> list[str]:
+    """The case of every run of talus so far, by its id."""
+    path = here / "runs"
+    return [line.split("/")[-3] for line in path.read_text().splitlines()] if path.exists() else []
+
+
+def table(folder: Path) -> list[dict[str, str]]:
+    with open(folder / "out" / "table.csv", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def status(folder: Path, case: str) -> dict:
+    return json.loads((folder / "out" / "cases" / case / "status.json").read_text())
+
+
+def driver(path: Path, *options: str) -> subprocess.Popen:
+    """`talus-lab sweep` as a process of its own."""
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join(word for word in sys.path if word)}
+    return subprocess.Popen([sys.executable, "-m", "talus_lab.cli", "sweep", str(path), *options], stdout=subprocess.PIPE,
+                            stderr=subprocess.STDOUT, text=True, env=environment, cwd=path.parent)
