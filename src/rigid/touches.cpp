@@ -27,6 +27,18 @@ constexpr double at_the_latest = 0.5 * (1.0 + 1e-9);
 
 Vec2 velocity_at(const Velocity& v, const Vec2& arm) { return Vec2(v.x, v.y) + v.spin * perp(arm); }
 
+/// m/s, of the fastest point of a block at `position` (m); `rebounds` as in Touches::fastest.
+double fastest_point(const Model& model, const Vec2& position, const Bodies& bodies, BlockId b, bool rebounds) {
+    const int q = bodies.body_of[b];
+    const Velocity& v = bodies.velocity[q];
+    const double arm = (position - bodies.position[q]).norm() + model.blocks.radius[b];
+    const Softness& soft = bodies.softness[q];
+    if (!rebounds || soft.spin == 0.0) return std::hypot(v.x, v.y) + std::abs(v.spin) * arm;
+    // With the radius of inertia r the energy is m (v2 + r2 w2) / 2, and v + w arm <= sqrt(v2 + r2 w2) sqrt(1 + arm2 / r2).
+    const double r2 = std::max(soft.x, soft.y) / soft.spin;
+    return std::sqrt((v.x * v.x + v.y * v.y + r2 * v.spin * v.spin) * (1.0 + arm * arm / r2));
+}
+
 double normal_velocity(const Touch& c, std::span<const Velocity> v, int end) {
     const Velocity &a = v[c.a], &b = v[c.b];
     return c.nx * (b.x - a.x) + c.ny * (b.y - a.y) + c.arm_b[end] * b.spin - c.arm_a[end] * a.spin;
@@ -106,29 +118,20 @@ bool fits_bond(const Model& model, const Contact& c) { return c.face >= 0 && mod
 
 }  // namespace
 
-double Touches::fastest(const Model& model, const Motion& motion, const Bodies& bodies) {
+double Touches::fastest(const Model& model, const Motion& motion, const Bodies& bodies, bool rebounds) {
     double fastest = 0.0;
-    for (BlockId b = 0; b < model.blocks.size(); ++b) {
-        const int q = bodies.body_of[b];
-        const Velocity& v = bodies.velocity[q];
-        const double arm = (motion.position[b] - bodies.position[q]).norm() + model.blocks.radius[b];
-        fastest = std::max(fastest, std::hypot(v.x, v.y) + std::abs(v.spin) * arm);
-    }
+    for (BlockId b = 0; b < model.blocks.size(); ++b)
+        fastest = std::max(fastest, fastest_point(model, motion.position[b], bodies, b, rebounds));
     return fastest;
 }
 
 void Touches::find(const Model& model, const Placed& placed, const State& state, const Bodies& bodies,
-                   std::span<const Velocity> before, double fall, double dt) {
+                   std::span<const Velocity> before, bool rebounds, double fall, double dt) {
     const int n = static_cast<int>(state.contacts.list.size()), nb = model.blocks.size();
     if (static_cast<int>(hint_.size()) != n) hint_.assign(n, -1);
     found_.resize(n);
     speed_.resize(nb);
-    for_all(nb, few, [&](int b) {
-        const int q = bodies.body_of[b];
-        const Velocity& v = bodies.velocity[q];
-        speed_[b] =
-            velocity_at(v, placed.block[b].position - bodies.position[q]).norm() + std::abs(v.spin) * model.blocks.radius[b];
-    });
+    for_all(nb, few, [&](int b) { speed_[b] = fastest_point(model, placed.block[b].position, bodies, b, rebounds); });
     for_all(n, few, [&](int i) {
         const Contact& c = state.contacts.list[i];
         const BlockId a = model.parts.block[c.part_a], b = model.parts.block[c.part_b];
@@ -219,6 +222,8 @@ void Touches::find_impacts(const Bodies& bodies, std::span<const Velocity> befor
     impact_.assign(bodies.size(), none);
     ahead_.assign(touches_.size(), 0.0);
     landed_.assign(2 * touches_.size(), 0.0);
+    hit_.assign(2 * touches_.size(), none);
+    uneven_.assign(3 * touches_.size(), 0.0);
     bool any = false;
     for (std::size_t i = 0; i < touches_.size(); ++i) {
         Touch& c = touches_[i];
@@ -227,11 +232,14 @@ void Touches::find_impacts(const Bodies& bodies, std::span<const Velocity> befor
         for (int end = 0; end < c.ends; ++end) {
             const double gap = manifold_[i].gap[end], change = normal_velocity(c, before, end);
             const double approach = -std::min(change, normal_velocity(c, bodies.velocity, end));
-            hits[end] = !(c.p[end] > 0.0 || -change * dt <= 4.0 * fall || std::abs(gap) > at_the_latest * dt * approach);
+            const double bent = std::abs(bend(manifold_[i], bodies, from_a_[i], c, end).x());
+            const double way = at_the_latest * dt * approach + 0.125 * bent * dt * dt;  // in half of the step
+            hits[end] = !(c.p[end] > 0.0 || -change * dt <= 4.0 * fall || std::abs(gap) > way);
             if (!hits[end]) continue;
             // What else carries a block that does not bounce, such as the corner it rocks about, is not known here.
             const double gained = rebound_[i] > 0.0 ? normal_velocity(c, bodies.velocity, end) - change : 0.0;
-            first = std::min(first, time_of_impact(gap - 0.5 * dt * change, change, gained / dt, dt) / dt);
+            hit_[2 * i + end] = time_of_impact(gap - 0.5 * dt * change, change, gained / dt, dt) / dt;
+            first = std::min(first, hit_[2 * i + end]);
         }
         if (!hits[0] && !hits[1]) continue;
         any = true;
@@ -246,6 +254,8 @@ void Touches::find_impacts(const Bodies& bodies, std::span<const Velocity> befor
             c.least[end] = std::max(0.0, rest * gained + leaves);
             if (c.least[end] == 0.0) continue;
             end_[2 * i + end] = End::bounces;
+            uneven_[3 * i + end] = (first - rest) * gained;
+            uneven_[3 * i + 2] = (first - rest) * (tangent_velocity(c, bodies.velocity) - tangent_velocity(c, before));
             landed_[2 * i + end] = rest * dt * (leaves + 0.5 * rest * gained);
         }
     }
@@ -267,6 +277,25 @@ void Touches::add_earlier() {
     }
 }
 
+double Touches::energy_of_later_landings(const Bodies& bodies, double speed, double together) const {
+    double energy = 0.0;
+    for (std::size_t i = 0; i < touches_.size(); ++i) {
+        const Touch& c = touches_[i];
+        double first = none;  // share of the step
+        for (const int body : {c.a, c.b})
+            if (moved_by_impact(bodies, body)) first = std::min(first, impact_[body]);
+        for (int end = 0; end < c.ends && rebound_[i] > 0.0 && first < none; ++end) {
+            const End kind = end_[2 * i + end];
+            const bool later = kind == End::bounces ? hit_[2 * i + end] > first + together : kind == End::comes_near;
+            if (!later || c.p[end] == 0.0) continue;
+            const double k = end == 0 ? c.k00 : c.k11;
+            const double approach = k * c.p[end] - normal_velocity(c, bodies.velocity, end);
+            if (approach > speed) energy += 0.5 * rebound_[i] * rebound_[i] * approach * approach / k;
+        }
+    }
+    return energy;
+}
+
 // An impulse p at the time t_i of the step moves a body by (dt - t_i) M^-1 J^T p, not by half of dt. The time follows from
 // the gap in the middle of the step and the speed of approach.
 void Touches::take_to_time_of_impact(const Bodies& bodies, std::span<const Velocity> before, double exact, double dt,
@@ -277,7 +306,9 @@ void Touches::take_to_time_of_impact(const Bodies& bodies, std::span<const Veloc
         for (int end = 0; end < c.ends; ++end) {
             const double gap = manifold_[i].gap[end], approach = -normal_velocity(c, before, end);
             pressed += c.p[end] - c.earlier[end];
-            if (std::abs(gap) > exact && std::abs(gap) <= 0.51 * dt * approach)
+            if (hit_[2 * i + end] <= 1.0)
+                later[end] = (0.5 - hit_[2 * i + end]) * dt * (c.p[end] - c.earlier[end]);
+            else if (std::abs(gap) > exact && std::abs(gap) <= 0.51 * dt * approach)
                 later[end] = -gap / approach * (c.p[end] - c.earlier[end]);
         }
         if (later[0] == 0.0 && later[1] == 0.0) continue;
@@ -426,10 +457,11 @@ void Touches::record(const Model& model, const Placed& placed, const Bodies& bod
         const Vec2 force = c.normal_force * m->normal + c.shear_force * perp(m->normal);
         const Vec2 from_b = c.point - placed.block[b].position;
         state.contacts.reaction[i] = {force, -cross(arm, force), cross(from_b, force)};
-        state.ledger.friction -= 0.5 * (u0 + u1) * t->p[2];
+        const double* uneven = &uneven_[3 * (t - touches_.data())];
+        state.ledger.friction -= 0.5 * (u0 + u1 + uneven[2]) * t->p[2];
         for (int end = 0; end < t->ends; ++end)
             state.ledger.contact_damping -=
-                0.5 * t->p[end] * (normal_velocity(*t, before, end) + normal_velocity(*t, after, end));
+                0.5 * t->p[end] * (normal_velocity(*t, before, end) + normal_velocity(*t, after, end) + uneven[end]);
     }
 }
 

@@ -13,9 +13,9 @@ public:
     /// Looks at every pair of the contact list whose blocks belong to different bodies, whose velocities hold weight and
     /// loads but no contacts; `before`: at the start of the step. Impulses of the step before are taken over (dt times the
     /// forces of the list). `fall`: m, how far blocks fall within a step; what is nearer counts as touching, or gaps of that
-    /// size would close and open for ever.
+    /// size would close and open for ever. `rebounds`: some joint has a restitution.
     void find(const Model& model, const Placed& placed, const State& state, const Bodies& bodies,
-              std::span<const Velocity> before, double fall, double dt);
+              std::span<const Velocity> before, bool rebounds, double fall, double dt);
 
     /// The two parts that lie deepest in each other, for the size of the thinner one, of those that `find` looked at.
     struct Deepest {
@@ -26,7 +26,8 @@ public:
     const Deepest& deepest() const { return deepest_; }
 
     /// m/s, no point of any block is faster: twice the way of half a step is how far apart two may be to matter in it.
-    static double fastest(const Model& model, const Motion& motion, const Bodies& bodies);
+    /// `rebounds`: nor after an impact that turns the motion of its body into any other of the same energy.
+    static double fastest(const Model& model, const Motion& motion, const Bodies& bodies, bool rebounds = false);
 
     std::span<Touch> list() { return touches_; }
     std::span<const Touch> list() const { return touches_; }
@@ -51,6 +52,11 @@ public:
     /// Adds to the impulses that were found those that acted before an impact.
     void add_earlier();
 
+    /// J, with which ends that have a restitution came down faster than `speed` (m/s) later in this step than another impact
+    /// of their body (by more than the share `together` of it). Their impulses are guesses: those that were seen coming
+    /// bounce as if nothing had been before, the others are stopped.
+    double energy_of_later_landings(const Bodies& bodies, double speed, double together) const;
+
 private:
     bool moved_by_impact(const Bodies& bodies, int body) const;  // in this step
     void find_impacts(const Bodies& bodies, std::span<const Velocity> before, double fall, double dt);
@@ -61,13 +67,16 @@ private:
 
     Deepest deepest_;
     std::vector<Touch> touches_;
-    std::vector<Manifold> manifold_;     // [touches]
-    std::vector<double> rebound_;        // [touches] restitution
-    std::vector<Vec2> from_a_;           // [touches] m, centroid of block a from that of its body
-    std::vector<End> end_;               // [2 touches] what becomes of it in this step
-    std::vector<double> landed_;         // [2 touches] m, gap of an end that bounces at the end of the step
-    std::vector<double> ahead_;          // [touches] s, after the middle of the step: when it hits, 0 = it does not
-    std::vector<double> impact_;         // [nq] share of the step before the first impact; above 1: none
+    std::vector<Manifold> manifold_;  // [touches]
+    std::vector<double> rebound_;     // [touches] restitution
+    std::vector<Vec2> from_a_;        // [touches] m, centroid of block a from that of its body
+    std::vector<End> end_;            // [2 touches] what becomes of it in this step
+    std::vector<double> landed_;      // [2 touches] m, gap of an end that bounces at the end of the step
+    std::vector<double> hit_;         // [2 touches] share of the step before it hits; above 1: it does not
+    std::vector<double> uneven_;  // [3 touches] m/s, what weight and loads add to both velocities of a bounce, at its ends
+                                  // and along it, as it is not in the middle of the step
+    std::vector<double> ahead_;   // [touches] s, after the middle of the step: when it hits, 0 = it does not
+    std::vector<double> impact_;  // [nq] share of the step before the first impact; above 1: none
     std::vector<std::uint8_t> pressed_;  // [2 touches] an end that presses after the step
     std::vector<int> slot_;              // [touches] in the contact list
     std::vector<int> hint_;              // [contacts] see find_manifold

@@ -115,6 +115,7 @@ private:
     bool half_step_rigid(double dt);
     void finish_step_rigid(double dt);
     bool short_enough_rigid(double speed);
+    bool one_by_one_rigid();
     void check_overlaps_rigid() const;
     void renew_pairs_rigid(double reach);
     bool break_bonds_rigid(double dt);
