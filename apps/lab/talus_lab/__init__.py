@@ -14,11 +14,11 @@ from typing import TYPE_CHECKING
 from talus_lab.errors import ResultError
 
 if TYPE_CHECKING:
-    from talus_lab import charts, measures
+    from talus_lab import charts, measures, sweep
     from talus_lab.run import Run, open_run as open
 
 __version__ = "0.1.0"
-__all__ = ["ResultError", "Run", "charts", "measures", "open"]
+__all__ = ["ResultError", "Run", "charts", "measures", "open", "sweep"]
 
 
 def __getattr__(name: str) -> object:

@@ -6,7 +6,7 @@ import argparse
 import sys
 
 import talus_lab
-from talus_lab.commands import pictures, studies, sweeps
+from talus_lab.commands import diagrams, pictures, studies, sweeps
 from talus_lab.errors import ResultError
 
 BAD_INPUT = 2  # exit code for anything the user gave, as in talus
@@ -29,7 +29,7 @@ def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="talus-lab", description="Reads the results of talus and draws them; measures speed and accuracy.")
     parser.add_argument("--version", action="version", version=f"talus-lab {talus_lab.__version__}")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
-    for group in (pictures, studies, sweeps):
+    for group in (pictures, sweeps, diagrams, studies):
         group.add(commands)
     return parser
 
