@@ -5,16 +5,22 @@ Everything is SI (angles in rad), in the coordinates of the scenario, and read-o
 
 from __future__ import annotations
 
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from types import MappingProxyType
-from typing import Mapping
+from typing import TYPE_CHECKING, Iterable, Iterator, Mapping
 
 import h5py
 import numpy as np
 
 from talus_lab.errors import ResultError, nearest
+
+if TYPE_CHECKING:
+    import pandas
+    import pyvista
+    import xarray
 
 SCHEMA_VERSION = 1
 JOINT_STATES = ("elastic", "sliding", "slipped", "bonded", "broken", "open")  # values of the contact column `state`
@@ -224,9 +230,39 @@ class Run:
                 raise ResultError(f"{self.path}: no dataset {path}")
             return str(_plain(file["talus"][path].attrs.get("unit", "1")))
 
+    # In the shapes of other packages, which need not be there
+    def to_pandas(self, table: str, frame: int = -1, name: str = "") -> pandas.DataFrame:
+        """A table as a pandas DataFrame, a copy; its units are in `attrs["units"]`, column -> unit.
+
+        table: blocks (of a frame: x, y, mass, held, ... and every field of talus_lab.fields), contacts (of a frame), energies (indexed by
+        time), or history (`name`, indexed by time). Raises ResultError for unknown tables, and if pandas is not there."""
+        from talus_lab import tables
+
+        return tables.to_pandas(self, table, frame, name)
+
+    def to_xarray(self, names: Iterable[str] = ("position", "angle"), frames: Iterable[int] | None = None) -> xarray.Dataset:
+        """Arrays of frames and blocks as an xarray Dataset [frame, block] or [frame, block, axis], with the coordinate `time` [s]; each has
+        its unit in `attrs["unit"]`. names: position, angle, displacement, rotation, velocity, removed, unbalanced_force, or fields of
+        talus_lab.fields. frames: all if none are given. Raises ResultError for unknown names, and if xarray is not there."""
+        from talus_lab import tables
+
+        return tables.to_xarray(self, names, frames)
+
+    def to_pyvista(self, frame: int = -1) -> pyvista.PolyData:
+        """A frame as PyVista's mesh: a polygon for each convex part, fields of its block as cell data. Raises ResultError if pyvista is not
+        there."""
+        from talus_lab import tables
+
+        return tables.to_pyvista(self, frame)
+
     # Reading
-    def _file(self) -> h5py.File:
-        return h5py.File(self.path, "r", locking=False)
+    @contextmanager
+    def _file(self) -> Iterator[h5py.File]:
+        try:
+            with h5py.File(self.path, "r", locking=False) as file:
+                yield file
+        except (OSError, KeyError) as error:
+            raise ResultError(f"{self.path}: is damaged, cut short or no longer there ({error})") from None
 
     def _read(self, path: str) -> np.ndarray:
         with self._file() as file:

@@ -1,4 +1,4 @@
-"""talus-lab plot, animate."""
+"""talus-lab plot, animate, export."""
 
 from __future__ import annotations
 
@@ -39,6 +39,13 @@ def add(commands: argparse._SubParsersAction) -> None:
     a.add_argument("--every", type=int, default=1, metavar="N", help="only every N-th frame")
     a.add_argument("--rate", type=float, default=10.0, metavar="N", help="frames per second (default: 10)")
     a.set_defaults(command=animate_command)
+
+
+    e = commands.add_parser("export", help="write the frames of a result for ParaView before 5.12: .vtu files and a .pvd that names them")
+    e.add_argument("file", type=Path, metavar="OUT.h5")
+    e.add_argument("--pvd", type=Path, nargs="?", metavar="FILE.pvd", help="default: beside the file; frames go into a folder of the same name")
+    e.add_argument("--every", type=int, default=1, metavar="N", help="only every N-th frame")
+    e.set_defaults(command=export_command)
 
 
 def picture_options(p: argparse.ArgumentParser, output: str) -> None:
@@ -101,6 +108,21 @@ def animate_command(options: argparse.Namespace) -> int:
     shown = Shown(options.color, options.forces, options.joints, options.stress, options.outline, options.exaggerate)
     animate(run, output, shown, range(first, last + 1, options.every), options.rate, options.width, options.dpi or DPI, progress("frame"))
     print(output)
+    return 0
+
+
+def export_command(options: argparse.Namespace) -> int:
+    from talus_lab.commands.progress import progress
+    from talus_lab.paraview import write_pvd
+    from talus_lab.run import open_run
+
+    output: Path = options.pvd or options.file.with_suffix(".pvd")
+    if output.suffix.lower() != ".pvd":
+        raise ResultError(f"{output}: the file for ParaView is written as .pvd")
+    if options.every < 1:
+        raise ResultError("--every: is 1 or more")
+    run = open_run(options.file)
+    print(write_pvd(run, output, range(0, run.frame_count, options.every), progress("frame"))[0])
     return 0
 
 
