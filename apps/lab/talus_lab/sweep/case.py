@@ -5,6 +5,7 @@ from __future__ import annotations
 import errno
 import json
 import os
+import re
 import select
 import shutil
 import signal
@@ -27,6 +28,7 @@ RESULT, STATUS, LOG = "out.h5", "status.json", "log.txt"
 ELSEWHERE: Record = {"status": "elsewhere"}  # somebody else computes it now
 SAID = {2: "refused", 3: "diverged", 5: "failed"}  # by exit code of talus; 0 and 1, an expectation not met or no equilibrium, are done
 DISK, INTERRUPTED = 4, 130
+COMPLAINT = re.compile(r"diverged: |output failed: |out of memory|a fault of talus|--set |\S+\.ya?ml:\d+ ")
 FROM_OUTSIDE = (signal.SIGKILL, signal.SIGTERM, signal.SIGINT, signal.SIGHUP)
 FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 
@@ -167,15 +169,20 @@ def _outcome(task: Task, code: int | None, log: Path) -> Record:
         return {"status": "timed out", "said": f"takes longer than {task.limit_s:g} s"}
     if code in (0, 1):
         return {}
-    lines = [line.strip() for line in log.read_text(encoding="utf-8", errors="replace").splitlines() if line.strip()]
-    last = lines[-1] if lines else f"exit code {code}"
-    if code == DISK or os.strerror(errno.ENOSPC) in last:
-        raise DiskError(f"{task.folder}: {last}")
+    said = _complaint(log) or f"exit code {code}"
+    if code == DISK or os.strerror(errno.ENOSPC) in said:
+        raise DiskError(f"{task.folder}: {said}")
     if code == INTERRUPTED or -code in FROM_OUTSIDE:
         raise KilledError(f"case {task.case}: talus was killed")
     if code < 0:
         return {"status": "crashed", "said": signal.Signals(-code).name}
-    return {"status": SAID.get(code, "failed"), "said": last}
+    return {"status": SAID.get(code, "failed"), "said": said}
+
+
+def _complaint(log: Path) -> str:
+    """What talus says of its fault, which need not be the last line of its log."""
+    lines = [line.strip() for line in log.read_text(encoding="utf-8", errors="replace").splitlines() if line.strip()]
+    return next((line for line in reversed(lines) if COMPLAINT.match(line)), lines[-1] if lines else "")
 
 
 def _measures(task: Task, result: Path) -> Record:

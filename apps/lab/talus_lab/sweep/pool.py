@@ -67,6 +67,8 @@ class LocalPool(Executor):
     def _ask(self, k: int, call: bytes) -> tuple[bool, Any]:
         process = self._processes[k] or _start()
         self._processes[k] = process
+        if self._stopped:  # between the call and the process
+            process.terminate()
         assert process.stdin and process.stdout
         process.stdin.write(call)
         process.stdin.flush()
