@@ -7,6 +7,10 @@ import signal
 import sys
 from pathlib import Path
 from types import FrameType
+from typing import TYPE_CHECKING, Mapping
+
+if TYPE_CHECKING:
+    from talus_lab.diagrams.pictures import Picture
 
 NOT_DONE, OUTPUT_FAILED = 1, 4  # exit codes, as in talus
 
@@ -32,6 +36,7 @@ def sweep_command(options: argparse.Namespace) -> int:
         found = sweep.prepare(options.config, options.workers, options.retry)
         print(sweep.listing(found) if options.dry_run else write_script(found.config, options.emit_slurm, options.workers or 1))
         return 0
+    pictures = _pictures(options.config)
     before = signal.signal(signal.SIGTERM, _interrupt)  # a polite kill, such as that of a queueing system
     try:
         found = sweep.sweep(options.config, options.workers, options.engine, options.scheduler, options.retry, not options.leave)
@@ -41,7 +46,31 @@ def sweep_command(options: argparse.Namespace) -> int:
     finally:
         signal.signal(signal.SIGTERM, before)
     print(f"{sweep.summary(found)}\n{found.config.output / 'table.csv'}")
+    if pictures and not options.leave:
+        _draw(found.config.output, pictures)
     return 0 if options.leave or set(found.counts()) == {"done"} else NOT_DONE
+
+
+def _pictures(config: Path) -> Mapping[str, Picture]:
+    """Those that the config lists, looked at before hours of computing."""
+    from talus_lab import sweep
+
+    if not sweep.read_config(config).pictures:
+        return {}
+    from talus_lab.diagrams.pictures import read_pictures
+
+    return read_pictures(config)
+
+
+def _draw(folder: Path, pictures: Mapping[str, Picture]) -> None:
+    from talus_lab import style
+    from talus_lab.diagrams.pictures import draw
+    from talus_lab.diagrams.table import read_table
+
+    table = read_table(folder)
+    for name, picture in pictures.items():
+        style.save(draw(table, picture), folder / f"{name}.png", style.DPI)
+        print(folder / f"{name}.png")
 
 
 def _interrupt(number: int, frame: FrameType | None) -> None:

@@ -10,10 +10,9 @@ from typing import Any, Callable, Mapping
 
 OPERATIONS = {ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv, ast.Pow: operator.pow,
               ast.USub: operator.neg}
-FUNCTIONS = {"sqrt": math.sqrt, "min": min, "max": max, "round": round, "sin_deg": lambda x: math.sin(math.radians(x)),
-             "cos_deg": lambda x: math.cos(math.radians(x)), "tan_deg": lambda x: math.tan(math.radians(x))}
-
-
+FUNCTIONS = {"sqrt": math.sqrt, "abs": abs, "min": min, "max": max, "round": round, "sin_deg": lambda x: math.sin(math.radians(x)),
+             "cos_deg": lambda x: math.cos(math.radians(x)), "tan_deg": lambda x: math.tan(math.radians(x)),
+             "atan_deg": lambda x: math.degrees(math.atan(x))}
 COMPARISONS = {ast.Lt: operator.lt, ast.LtE: operator.le, ast.Gt: operator.gt, ast.GtE: operator.ge, ast.Eq: operator.eq, ast.NotEq: operator.ne}
 LOGIC = {ast.And: all, ast.Or: any}
 

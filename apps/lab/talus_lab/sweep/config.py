@@ -13,7 +13,8 @@ from talus_lab.study.entries import TYPES, entry, read_lines, read_yaml, report,
 from talus_lab.sweep.measures import DEFAULT, Measure, measure_of
 from talus_lab.sweep.ranges import is_drawn, levels_of
 
-KEYS = ("title", "scenario", "output", "set", "parameters", "where", "sample", "repetitions", "measures", "keep", "limit_s", "cluster")
+PICTURES = "pictures"  # read by talus_lab.diagrams
+KEYS = ("title", "scenario", "output", "set", "parameters", "where", "sample", "repetitions", "measures", "keep", "limit_s", "cluster", PICTURES)
 NEEDED = ["scenario", "output", "parameters"]
 COLUMNS = ("case", "status", "wall_time", "talus_version", "scenario_hash", "host", "started")  # of every table
 METHODS = ("latin hypercube", "random")
@@ -74,6 +75,7 @@ class Config:
     keep: str = KEPT[0]  # or results: the result file of every case
     limit_s: float | None = None  # a case that takes longer has failed
     cluster: Mapping[str, Any] = field(default_factory=dict)  # of dask-jobqueue
+    pictures: bool = False  # whether there are any
 
     def fault(self, *faults: str) -> None:
         """Raises ResultError with the lines of what the faults begin with."""
@@ -110,7 +112,7 @@ def _config(path: Path, given: dict, lines: Mapping[str, int], faults: list[str]
                   (folder / plain("output", "str", "")).resolve(), section(Parameter, given.get("parameters", {}), "parameters", faults),
                   _measures(given.get("measures", list(DEFAULT)), faults), lines, plain("set", "dict", {}),
                   tuple(str(text) for text in plain("where", "list", [])), part(Sample, "sample"), part(Repetitions, "repetitions"),
-                  plain("keep", "str", KEPT[0]), plain("limit_s", "float", None), plain("cluster", "dict", {}))
+                  plain("keep", "str", KEPT[0]), plain("limit_s", "float", None), plain("cluster", "dict", {}), PICTURES in given)
 
 
 def _measures(given: Any, faults: list[str]) -> tuple[Measure, ...]:

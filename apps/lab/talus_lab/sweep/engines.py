@@ -79,6 +79,9 @@ def _queue(cluster: Mapping[str, Any]) -> Any:
         import dask_jobqueue
     except ImportError:
         raise ResultError("the engine dask with a cluster needs the package dask-jobqueue: pip install 'talus-lab[dask]'") from None
-    made = getattr(dask_jobqueue, QUEUES[kind])(**{"cores": 1, "processes": 1, "memory": "2 GB"} | options)
+    try:
+        made = getattr(dask_jobqueue, QUEUES[kind])(**{"cores": 1, "processes": 1, "memory": "2 GB"} | options)
+    except (TypeError, ValueError) as error:
+        raise ResultError(f"cluster: {str(error).partition('. ')[0]}") from None
     made.adapt(minimum_jobs=0, maximum_jobs=jobs)
     return made

@@ -11,6 +11,7 @@ from __future__ import annotations
 import json
 import os
 import socket
+from functools import cache
 from pathlib import Path
 
 BEAT = 20.0  # s between touches
@@ -65,14 +66,24 @@ class Lock:
         return sorted(int(number) for number in found if number.isdigit())
 
 
+@cache
+def machine() -> str:
+    """Its name and that of this boot: of machines made from one image all may have the same name."""
+    try:
+        boot = Path("/proc/sys/kernel/random/boot_id").read_text().strip()
+    except OSError:
+        boot = ""
+    return f"{socket.gethostname()} {boot}"
+
+
 def owner() -> str:
-    return json.dumps({"host": socket.gethostname(), "pid": os.getpid(), "began": began(os.getpid())})
+    return json.dumps({"host": machine(), "pid": os.getpid(), "began": began(os.getpid())})
 
 
 def alive(text: str, touched: float, now: float) -> bool:
     """touched, now: s, both by the clock of the file system."""
     who = json.loads(text)
-    if who["host"] != socket.gethostname():
+    if who["host"] != machine():
         return now - touched < LEFT_ALONE
     return began(who["pid"]) == who["began"] != ""
 
