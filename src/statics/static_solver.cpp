@@ -11,7 +11,7 @@ namespace {
 
 constexpr int look_interval = 5;          // iterations between looks at the unbalanced ratio, which cost a tenth of one
 constexpr int least_iterations = 10;      // before a state is called an equilibrium: one may pass through balance
-constexpr double least_share = 1e-3;    // where it comes on slowest
+constexpr double least_share = 1e-3;      // where it comes on slowest
 constexpr double first_share = 0.01;      // of the load in the first iteration
 constexpr double rounding = 1e-13;        // unbalanced ratio below which there is nothing to gain
 constexpr double spare = 1e-3;            // of the tolerance: below, Newton's method stops; it costs a step or two
@@ -19,6 +19,10 @@ constexpr std::int64_t patience = 50;     // iterations of relaxation after Newt
 constexpr std::int64_t first_look = 200;  // iterations to the first look whether something keeps moving; doubled then
 constexpr double far = 0.01;              // of its size: if it has so far to go, it is not held
 constexpr int looks_needed = 3;           // without progress: 1600 iterations at least
+constexpr int fall_interval = 200;        // iterations between looks whether something has left its place altogether
+// Sizes of a block: what has gone so far and is still moving was held by nothing. Joints that close and gaps that shut are a
+// tenth of it at most; twice of it finds the same blocks some hundred iterations later.
+constexpr double left_its_place = 3.0;
 
 double quarter_of_thinnest(const Model& model, const State& state) {
     double thinnest = std::numeric_limits<double>::infinity();
@@ -132,7 +136,19 @@ void StaticSolver::look(const Model& model, double tolerance, State& state) cons
     // Newton's method has the last word: it helps, or there is nothing left to gain.
     if (s.now.ratio < tolerance && s.now.drift < largest_drift)
         s.polish_at = std::max<std::int64_t>(s.now.iterations, least_iterations);
+    if (s.now.iterations % fall_interval == 0) look_for_fall(model, state);
     if (s.now.iterations >= s.look_at) look_for_motion(model, state);
+}
+
+// A heap of falling blocks hits and wakes others for as long as it falls, so its way need not double from look to look.
+void StaticSolver::look_for_fall(const Model& model, State& state) const {
+    double farthest = left_its_place;
+    for (BlockId b = 0; b < model.blocks.size(); ++b) {
+        if (state.removed[b]) continue;
+        const double size = std::sqrt(model.blocks.area[b]);
+        const double gone = (state.motion.position[b] - state.statics.start[b]).norm() / size;
+        if (gone > farthest && way_ahead(b, state) > far * size) farthest = gone, state.statics.now.moving = b;
+    }
 }
 
 // m, from the stiffness that the last window met: infinite where there was none. A soft arch or a block that almost topples

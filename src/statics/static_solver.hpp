@@ -33,6 +33,7 @@ private:
     void bring_on_load(State& state) const;
     bool polish(const Model& model, const Placed& placed, double tolerance, const Forces& forces, State& state);
     void look(const Model& model, double tolerance, State& state) const;
+    void look_for_fall(const Model& model, State& state) const;
     void look_for_motion(const Model& model, State& state) const;
     double way_ahead(BlockId b, const State& state) const;
 

@@ -226,6 +226,26 @@ run: {solver: static, until: {equilibrium: 1e-6}}
 
 }  // namespace
 
+TEST_CASE(
+    "static: stones that roll down a slope and hit each other have no equilibrium, and it is known before they are far") {
+    const Scenario scenario = scenario_of(R"(
+gravity: [0, -9.81]
+materials: {rock: {density: 2600}}
+joints: {joint: {normal_stiffness: 1e9, shear_stiffness: 5e8, friction_angle_deg: 20}}
+blocks:
+  - {name: slope, outline: [[0, 0], [60, 0], [0, 34]], held: true}
+  - {name: step, rectangle: {corner: [10, 28.4], size: [0.5, 0.4], angle_deg: -29.54}, held: true}
+  - {name: stone, rectangle: {corner: [1, 34], size: [0.9, 1.1], angle_deg: 5}, repeat: {count: 8, step: [1.6, -0.35]}}
+run: {solver: static, until: {equilibrium: 1e-6}}
+)");
+    WholeRun run(scenario);
+    run.to_the_end();
+    const StaticEvidence& evidence = run.state().statics.now;
+    CHECK(evidence.reached == 0);
+    REQUIRE(evidence.moving >= 2);
+    CHECK((run.state().motion.position[evidence.moving] - run.model().blocks.start[evidence.moving]).norm() < 30.0);
+}
+
 TEST_CASE("one hash for a static run with any number of threads, any skin, stopped and resumed, scratch thrown away") {
     const Scenario scenario = scenario_of(opening);
     std::int64_t newton = 0;
