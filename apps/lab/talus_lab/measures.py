@@ -96,12 +96,12 @@ def displacement(run: Run, point: Sequence[float], component: str = "magnitude",
 
 
 def run_out(run: Run, frame: int = -1, limit: float = 0.1) -> float:
-    """m, by how much the blocks that have moved by more than `limit` m reach farther to the right, or to the left if that is more,
-    than the free blocks did at the start."""
+    """m, by how much the blocks that have moved by more than `limit` m reach farther to the right than all of them together did in the first
+    frame, or to the left if that is more."""
     moved = _moved(run, limit, frame)[run.corner_block]
     if not moved.any():
         return 0.0
-    before = run.corners(0)[_free(run, 0)[run.corner_block], 0]
+    before = run.corners(0)[moved, 0]
     after = run.corners(frame)[moved, 0]
     return float(max(after.max() - before.max(), before.min() - after.min(), 0.0))
 

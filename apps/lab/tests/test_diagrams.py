@@ -1,3 +1,6 @@
+import json
+from pathlib import Path
+
 import numpy as np
 import pytest
 import yaml
@@ -131,6 +134,18 @@ def test_a_config_lists_pictures(blocks, tmp_path):
     figure = pictures.draw(read_table(blocks), pictures.read_pictures(tmp_path / "p.yaml")["chart"])
     assert len(figure.axes) == 1 and legend(figure)[-2:] == ["exact", "half"]
     assert figure.axes[0].get_lines()[-1].get_ydata() == pytest.approx(0.5 * figure.axes[0].get_lines()[-1].get_xdata())
+
+
+def test_the_config_of_the_sweep_is_used_if_it_lists_pictures_and_nothing_else_is_asked_for(blocks, tmp_path, capsys):
+    config, about = tmp_path / "c.yaml", json.loads((blocks / "sweep.json").read_text())
+    (blocks / "sweep.json").write_text(json.dumps({**about, "config": str(config)}))
+    config.write_text("title: a\npictures: {most: {kind: tornado, value: max_displacement}}")
+    for options, names in (([], ["most.png"]), (["--kind", "scatter"], ["scatter.png"])):
+        assert main(["sweep-plot", str(blocks), "--dpi", "60", *options]) == 0
+        assert [Path(line).name for line in capsys.readouterr().out.split()] == names
+    config.write_text("title: a")
+    assert main(["sweep-plot", str(blocks), "--dpi", "60"]) == 0
+    assert [Path(line).name for line in capsys.readouterr().out.split()] == ["modes.png", "map.png"]
 
 
 @pytest.mark.parametrize("options, complaint", [

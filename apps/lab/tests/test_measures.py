@@ -37,13 +37,14 @@ def test_the_block_at_a_point_is_found_and_else_the_nearest(result):
     assert measures.displacement(run, ORIGIN + [0.3, 0.9], "y") == 0
 
 
-def test_run_out_is_how_far_what_moved_reaches_beyond_where_the_mass_was(result):
-    run = talus_lab.open(result)
-    assert measures.run_out(run) == 0  # the square slides, but not beyond the L beside it
+def test_run_out_is_how_far_what_moved_reaches_beyond_where_it_reached(result):
+    assert measures.run_out(talus_lab.open(result)) == pytest.approx(0.4)
+    assert measures.run_out(talus_lab.open(result), limit=0.5) == 0
     with h5py.File(result, "a") as file:
-        file["talus/frames/position"][2, 1, 0] = 6.0  # its right edge then lies at 6.5; that of the L lay at 4 at the start
-        file["VTKHDF/CellData/displacement"][2 * 4 + 1, 0] = 6.0
-    assert measures.run_out(talus_lab.open(result)) == pytest.approx(2.5)
+        file["talus/frames/position"][2, 1:, 0] = [6.0, -4.0]  # both have moved; the L, once the right one, is the left one now
+        file["VTKHDF/CellData/displacement"][2 * 4 + 1 : 3 * 4, 0] = [6.0, -7.0, -7.0]
+    # The right end goes from 4 to 6.5, the left end from -0.5 to -5: arms of the L turned by 90 degrees lie between -1 and 1
+    assert measures.run_out(talus_lab.open(result)) == pytest.approx(4.5)
 
 
 def test_histories_and_energies_are_read_at_the_end_or_where_they_are_largest(result):

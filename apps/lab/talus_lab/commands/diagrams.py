@@ -17,7 +17,8 @@ def add(commands: argparse._SubParsersAction) -> None:
     p = commands.add_parser("sweep-plot", help="draw what came of a sweep: modes of failure, maps, probabilities, what matters most")
     p.add_argument("folder", type=Path, metavar="FOLDER", help="the output of `talus-lab sweep`")
     p.add_argument("-o", "--output", type=Path, metavar="PATH", help="picture, .png, .svg or .pdf, or a folder for several (default: FOLDER)")
-    p.add_argument("--config", type=Path, metavar="CONFIG.yaml", help="draw what it lists under `pictures`, see docs/python.md")
+    p.add_argument("--config", type=Path, metavar="CONFIG.yaml", help="draw what it lists under `pictures`, see docs/python.md (default: the config of the sweep, if it lists any and no other option "
+                   "says what to draw)")
     p.add_argument("--kind", metavar="KIND", help="modes, map, probability, tornado or scatter (default: what fits)")
     p.add_argument("--x", default="", metavar="PARAMETER")
     p.add_argument("--y", default="", metavar="PARAMETER")
@@ -35,12 +36,13 @@ def add(commands: argparse._SubParsersAction) -> None:
 def sweep_plot_command(options: argparse.Namespace) -> int:
     from talus_lab import style
     from talus_lab.commands.pictures import check_size
-    from talus_lab.diagrams.pictures import draw, read_pictures
+    from talus_lab.diagrams.pictures import draw, lists_pictures, read_pictures
     from talus_lab.diagrams.table import read_table
 
     check_size(options)
     table = read_table(options.folder)
-    pictures = read_pictures(options.config) if options.config else _asked(options, table)
+    config = options.config or (table.config if not _says_what(options) else None)
+    pictures = read_pictures(config) if config and (options.config or lists_pictures(config)) else _asked(options, table)
     files = _files(options, table.path, list(pictures))
     for path in files:
         style.check_format(path)
@@ -48,6 +50,10 @@ def sweep_plot_command(options: argparse.Namespace) -> int:
         style.save(draw(table, picture), path, options.dpi or style.DPI)
         print(path)
     return 0
+
+
+def _says_what(options: argparse.Namespace) -> bool:
+    return bool(options.kind or options.x or options.y or options.panel or options.value or options.limit is not None or options.curve)
 
 
 def _asked(options: argparse.Namespace, table) -> dict[str, Picture]:

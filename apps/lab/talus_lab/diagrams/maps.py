@@ -37,7 +37,7 @@ def value_map(table: Table, x: str, y: str, value: str, panel: str | None = None
     check(table, x=x, y=y, panel=panel)
     numbers = table.numbers(value)
     said = f"{table.labels.get(value, value)} {quantity(limit, table.units.get(value, '1'))}" if limit is not None else ""
-    return _map(table, x, y, panel, numbers, table.label(value), _norm(numbers, table), limit, said, curves, width_cm)
+    return _map(table, x, y, panel, numbers, table.label(value), _norm(numbers, table, value), limit, said, curves, width_cm)
 
 
 def probability(table: Table, x: str, y: str | None = None, panel: str | None = None, value: str | None = None, limit: float | None = None,
@@ -71,10 +71,10 @@ def wilson(failed: np.ndarray, of: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return middle - half, middle + half
 
 
-def _norm(numbers: np.ndarray, table: Table) -> Normalize:
+def _norm(numbers: np.ndarray, table: Table, value: str) -> Normalize:
     known = numbers[np.isfinite(numbers)]
     if not len(known):
-        raise ResultError(f"{table.path}: no case has a value of it yet")
+        raise ResultError(f"{table.path}: no case has {value} yet")
     above = known[known > 0]
     if len(above) and known.min() >= 0 and above.max() > WIDE * above.min():
         return LogNorm(above.min(), above.max(), clip=True)
@@ -116,8 +116,8 @@ def _cells(ax: Axes, at: np.ndarray, numbers: np.ndarray, lattice: tuple, norm: 
         ax.add_collection(PathCollection([cells(np.column_stack([x[i], y[j]]), x, y)], **MISSING, linewidth=0, zorder=1), autolim=False)
     if limit is not None and min(mean.shape) > 1 and np.nanmin(mean) < limit <= np.nanmax(mean):
         level, over = (np.log(limit), np.log(mean)) if isinstance(norm, LogNorm) and limit > 0 and np.nanmin(mean) > 0 else (limit, mean)
-        ax.contour(x, y, np.ma.masked_invalid(over), [level], colors="white", linewidths=3.0, zorder=4)
-        ax.contour(x, y, np.ma.masked_invalid(over), [level], colors="#d55e00", linewidths=1.6, zorder=4)
+        ax.contour(x, y, np.ma.masked_invalid(over), [level], colors="white", linewidths=3.0, linestyles="solid", zorder=4)
+        ax.contour(x, y, np.ma.masked_invalid(over), [level], colors="#d55e00", linewidths=1.6, linestyles="solid", zorder=4)
     return bool(len(i))
 
 
@@ -138,7 +138,7 @@ def _scattered(ax: Axes, at: np.ndarray, numbers: np.ndarray, norm: Normalize, l
         mesh = Triangulation(*at[known].T)
         ax.tripcolor(mesh, numbers[known], norm=norm, cmap=COLORS, shading="gouraud", zorder=1)
         if limit is not None and numbers[known].min() < limit <= numbers[known].max():
-            ax.tricontour(mesh, numbers[known], [limit], colors="#d55e00", linewidths=1.6, zorder=4)
+            ax.tricontour(mesh, numbers[known], [limit], colors="#d55e00", linewidths=1.6, linestyles="solid", zorder=4)
     ax.scatter(*at[known].T, c=numbers[known], norm=norm, cmap=COLORS, s=14, edgecolors="white", linewidths=0.5, zorder=3)
     ax.plot(*at[~known].T, linestyle="none", marker="x", color="#707070", markersize=4)
 

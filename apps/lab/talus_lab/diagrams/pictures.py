@@ -37,6 +37,11 @@ class Picture:
     width_cm: float = WIDTH_CM
 
 
+def lists_pictures(path: Path) -> bool:
+    """Whether there is a config with a section `pictures`."""
+    return path.is_file() and "pictures" in read_yaml(path)
+
+
 def read_pictures(path: Path) -> Mapping[str, Picture]:
     """The section `pictures` of a config. Raises ResultError with every fault, one per line."""
     given = read_yaml(path).get("pictures")
