@@ -79,7 +79,7 @@ class Curve:
         if self.y:
             at = np.linspace(*x_range, 200)
             try:
-                return [np.array([[u, evaluate(self.y, {**values, "x": u, x: u}, ANGLES)] for u in at])]
+                return [np.array([[u, evaluate(self.y, {**values, "x": u, x: u})] for u in at])]
             except FormulaError as error:
                 raise ResultError(f"curve {error}") from None
         if {x, y} != {self.slope, self.friction}:
@@ -89,7 +89,3 @@ class Curve:
             raise ResultError(f"curve {self.theory}: {self.ratio} varies within a panel; give it as `panel`")
         lines = NAMED[self.theory](*([float(ratio)] if "ratio" in NEEDS[self.theory] else []))
         return lines if x == self.slope else [line[:, ::-1] for line in lines]
-
-
-ANGLES = {"atan_deg": lambda v: float(np.degrees(np.arctan(v))), "asin_deg": lambda v: float(np.degrees(np.arcsin(v))),
-          "acos_deg": lambda v: float(np.degrees(np.arccos(v)))}
