@@ -20,7 +20,7 @@ from typing import Any
 from talus_lab.errors import ResultError
 from talus_lab.run import open_run
 from talus_lab.sweep.lifetime import end_with_parent
-from talus_lab.sweep.lock import BEAT, Lock
+from talus_lab.sweep.lock import BEAT, OWNER, Lock
 from talus_lab.sweep.measures import measured, units
 
 Record = dict[str, Any]  # what status.json holds
@@ -59,8 +59,8 @@ class Task:
 
 
 def run_case(task: Task) -> Record:
-    """The record, which somebody else may have made; ELSEWHERE if that is going on. Raises DiskError, KilledError, and ResultError for
-    measures that do not exist: the case is then as if it had never begun."""
+    """The record, which somebody else may have made; ELSEWHERE if that is going on. Raises DiskError, KilledError, MeasureError, and
+    ResultError if it cannot be computed here at all: the case is then as if it had never begun."""
     folder = Path(task.folder)
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -73,9 +73,8 @@ def run_case(task: Task) -> Record:
         finally:
             lock.release()
     except OSError as error:
-        if error.errno in FULL:
-            raise DiskError(f"{folder}: {error.strerror}") from None
-        raise
+        kind = DiskError if error.errno in FULL else ResultError
+        raise kind(f"{error.filename or folder}: {error.strerror}") from None
 
 
 def read_status(folder: Path) -> Record:
@@ -116,6 +115,8 @@ def _run(task: Task, lock: Lock) -> Record:
     folder = Path(task.folder)
     for left in folder.glob("part-*"):  # by those who were killed
         shutil.rmtree(left, ignore_errors=True)
+    for left in folder.glob(f"{OWNER}*"):  # who is about to ask gets the answer that somebody is here
+        left.unlink(missing_ok=True)
     part = folder / f"part-{os.getpid()}"
     part.mkdir()
     record: Record = {"case": task.case, "status": "done", "said": "", "measures": {}, "units": {}, "wall_time": 0.0, "threads": task.threads,

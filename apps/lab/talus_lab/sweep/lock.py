@@ -16,7 +16,7 @@ from pathlib import Path
 
 BEAT = 20.0  # s between touches
 LEFT_ALONE = 6 * BEAT  # s; less, and a file system that hangs for a minute would lose a case to another; more, and a dead host keeps its cases longer
-PREFIX = "lock."
+PREFIX, OWNER = "lock.", "owner."
 
 
 class Lock:
@@ -30,7 +30,7 @@ class Lock:
         """False if somebody else computes here. Who got it looks again at what there is to do: it may just have been done."""
         numbers = self._numbers()
         last = self.folder / f"{PREFIX}{numbers[-1]}" if numbers else None
-        written = self.folder / f"owner.{socket.gethostname()}.{os.getpid()}"
+        written = self.folder / f"{OWNER}{socket.gethostname()}.{os.getpid()}"
         try:
             written.write_text(owner(), encoding="utf-8")
             before = last and last.read_text(encoding="utf-8")
