@@ -98,11 +98,12 @@ def test_every_combination_is_a_case_named_by_its_scenario(tmp_path, here):
 
 def test_conditions_levels_formulas_and_repetitions(tmp_path, here):
     parameters = {"slope_deg": {"values": [0, 30], "set": {"gravity": ["{9.81*sin_deg(slope_deg)}", "{-9.81*cos_deg(slope_deg)}"]}},
-                  "rock": {"levels": {"soft": {"materials.rock.density": 2000, "joints.base.friction_angle_deg": "{15 + slope_deg/10}"},
-                                      "hard": {"materials.rock.density": 2700}}}}
+                  "rock": {"levels": {"soft": {"materials.rock.density": 2000, "joints.base.friction_angle_deg": "{15 + slope_deg/10 + more}"},
+                                      "hard": {"materials.rock.density": 2700}}},
+                  "more": {"values": [0]}}
     found = sweep.prepare(config(tmp_path, parameters=parameters, where=["slope_deg == 0 or rock == 'soft'"], set={"title": "slope {slope_deg}"},
                                  repetitions={"count": 2, "seed": 5, "set": "blocks[1].spin"}))
-    assert [tuple(case.values.values()) for case in found.cases] == [(0, "soft", 5), (0, "soft", 6), (0, "hard", 5), (0, "hard", 6), (30, "soft", 5), (30, "soft", 6)]
+    assert [(v["slope_deg"], v["rock"], v["repetition"]) for v in (case.values for case in found.cases)] == [(0, "soft", 5), (0, "soft", 6), (0, "hard", 5), (0, "hard", 6), (30, "soft", 5), (30, "soft", 6)]
     changes = dict(change.split("=", 1) for change in found.cases[5].overrides)
     assert json.loads(changes["gravity"]) == pytest.approx([4.905, -9.81 * math.sqrt(3) / 2])
     assert changes["joints.base.friction_angle_deg"] == "18.0" and changes["title"] == '"slope 30"' and changes["blocks[1].spin"] == "6"

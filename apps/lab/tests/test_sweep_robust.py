@@ -285,13 +285,13 @@ def test_progress_is_a_line_that_moves_or_lines_in_a_log(capsys):
     progress.count("done"), progress.count("crashed")
     assert progress.line(2, 4.0) == "41 of 100 done, 3 failed, 2 running; 0.5 cases/s, 112 s to go".replace("112 s", "2 min")
     progress._shown -= 1
-    progress.show(2)
+    progress.show(lambda: 2)
     assert progress._stream.text.startswith("\r\033[K41 of 100") and "\n" not in progress._stream.text
     log = Progress(100, 40, 2, Stream(False))
-    log.show(2)
+    log.show(lambda: 2)
     assert log._stream.text == ""
     log._shown -= 20
-    log.show(2)
+    log.show(lambda: 2)
     assert log._stream.text == "40 of 100 done, 2 failed, 2 running\n"
     assert [duration(s) for s in (5, 100, 7000)] == ["5 s", "2 min", "1.9 h"]
 

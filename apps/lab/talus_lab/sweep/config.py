@@ -134,7 +134,7 @@ def _contradictions(config: Config) -> list[str]:
         faults.append("limit_s: is not above 0")
     for name, parameter in config.parameters.items():
         faults += levels_of(parameter, f"parameters.{name}")[1]
-    said = json.dumps([config.set, *(parameter.set for parameter in config.parameters.values())], default=str)
+    said = json.dumps([config.set, *([parameter.set, parameter.levels] for parameter in config.parameters.values())], default=str)
     for name, parameter in config.parameters.items():
         if not parameter.set and not parameter.levels and not re.search(rf"\{{[^{{}}]*\b{re.escape(name)}\b", said):
             faults.append(f"parameters.{name}: sets no key of the scenario, and no formula knows it; give it `set`")

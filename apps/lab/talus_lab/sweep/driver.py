@@ -7,8 +7,8 @@ import subprocess
 import time
 from collections import Counter
 from concurrent.futures import CancelledError, Future
-from dataclasses import dataclass, field
-from typing import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Mapping, Sequence
 
 from talus_lab.errors import ResultError
 from talus_lab.sweep.case import ELSEWHERE, RESULT, DiskError, KilledError, Record, Task, is_made, read_status, run_case
@@ -19,7 +19,6 @@ from talus_lab.sweep.measures import MeasureError
 from talus_lab.sweep.progress import Progress
 from talus_lab.sweep.table import columns_of, write_tables
 
-RETRIES = ("failed", "all")
 LOST = 3  # times that a case may lose its worker: once is chance, and what kills every worker is the case itself
 WAIT = 1.0  # s between looks at a case that somebody else computes
 SAVE = 30.0  # s between tables while it runs
@@ -34,8 +33,6 @@ class Sweep:
     cases: Sequence[Case]
     tasks: Mapping[str, Task]  # by id
     records: dict[str, Record]  # by id, of earlier calls too
-    retry: str = ""
-    left: Counter = field(default_factory=Counter)  # what became of cases that were not computed
 
     def due(self) -> list[Task]:
         """What is missing or asked for again."""
@@ -73,7 +70,7 @@ def prepare(config: Config, talus: str, workers: int, retry: str = "") -> Sweep:
 
     tasks = {case.id: Task(case.id, str(folder / case.id), str(config.scenario), case.overrides, talus, version, keys, threads, config.limit_s,
                            config.keep == "results", redo(records[case.id])) for case in cases}
-    return Sweep(config, cases, tasks, records, retry)
+    return Sweep(config, cases, tasks, records)
 
 
 def compute(sweep: Sweep, engine: Engine, wait: bool = True, progress: Progress | None = None) -> None:
@@ -117,7 +114,7 @@ class _Round:
             except queue.Empty:
                 pass
             self._look_elsewhere()
-            self.progress.show(min(self.out, self.engine.workers()))
+            self.progress.show(lambda: min(self.out, self.engine.workers()))
             if time.monotonic() - self.saved > SAVE:
                 self.saved = time.monotonic()
                 self.sweep.write()
@@ -130,7 +127,7 @@ class _Round:
         try:
             record = future.result()
         except KilledError as error:
-            self._leave(task, "killed", str(error))
+            self._tell(str(error))
         except (ResultError, CancelledError):
             raise
         except Exception as error:  # of the engine: Dask has its own words for a worker that was lost
@@ -138,25 +135,18 @@ class _Round:
             if self.lost[task.case] < LOST:
                 self._call(task)
             else:
-                self._leave(task, "lost", f"case {task.case}: lost {LOST} times, the last time because: {error}")
-            return
+                self._tell(f"case {task.case}: lost {LOST} times, the last time because: {error}")
         else:
             if record["status"] != ELSEWHERE["status"]:
                 self._keep(task, record)
             elif self.wait:
                 self.elsewhere[task.case] = time.monotonic() + WAIT, task
-            else:
-                self.sweep.left["computed elsewhere"] += 1
 
     def _keep(self, task: Task, record: Record) -> None:
         self.sweep.records[task.case] = record
         self.progress.count(record["status"])
         if record["status"] != "done":
             self._tell(f"case {task.case}: {record['status']}: {record['said']}; see {task.folder}/log.txt")
-
-    def _leave(self, task: Task, why: str, said: str) -> None:
-        self.sweep.left[why] += 1
-        self._tell(said)
 
     def _tell(self, text: str) -> None:
         self.told += 1

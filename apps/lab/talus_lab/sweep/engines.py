@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any, Callable, Iterator, Mapping
 
-from talus_lab.errors import ResultError
+from talus_lab.errors import ResultError, nearest
 from talus_lab.sweep.pool import LocalPool
 
 ENGINES = ("local", "dask")
@@ -30,6 +30,8 @@ def cores() -> int:
 @contextmanager
 def engine_of(name: str, workers: int, scheduler: str = "", cluster: Mapping[str, Any] = {}) -> Iterator[Engine]:
     """Left by an exception, it ends what runs."""
+    if name not in ENGINES:
+        raise ResultError(f"engine: {name}{nearest(name, ENGINES)}")
     made = _dask(workers, scheduler, cluster) if name == "dask" or scheduler else _local(workers)
     with made as engine:
         try:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 import time
-from typing import TextIO
+from typing import Callable, TextIO
 
 ON_TERMINAL, IN_LOG = 0.2, 10.0  # s between lines
 
@@ -24,12 +24,12 @@ class Progress:
         else:
             self.failed += 1
 
-    def show(self, running: int) -> None:
-        """Looks at the clock."""
+    def show(self, running: Callable[[], int]) -> None:
+        """If it is time for a line. running: asked then only, for a scheduler may be far away."""
         now = time.monotonic()
         if now - self._shown >= (ON_TERMINAL if self._terminal else IN_LOG):
             self._shown = now
-            self._write(self.line(running, now - self._began))
+            self._write(self.line(running(), now - self._began))
 
     def line(self, running: int, elapsed: float) -> str:
         new = self.done + self.failed - self._before
