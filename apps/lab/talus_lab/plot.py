@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.patches import Patch
 
-from talus_lab import layers
+from talus_lab import layers, measures
 from talus_lab.colors import BlockColors, block_colors, check_color, plain
 from talus_lab.layers import Geometry
 from talus_lab.run import Run
@@ -47,7 +47,8 @@ def picture(run: Run, frame: int = -1, color: str = "displacement", forces: bool
             own += layers.draw_forces(ax, run, geometry) if forces else []
             own += layers.draw_stress(ax, run, geometry) if stress else []
             own += layers.draw_outline(ax, run, start, f"at t = {quantity(run.times[0], 's', 4)}") if outline and geometry is now else []
-            ax.set_title(moment(run, geometry, [colors.note]), loc="left", fontsize=9, color="#404040")
+            found = f"{measures.verdict(run)}, {measures.mechanism(run)}" if color == "mechanism" and geometry is now else ""
+            ax.set_title(moment(run, geometry, [colors.note, found.removesuffix(", none")]), loc="left", fontsize=9, color="#404040")
         color_bar(figure, axes, colors)
         finish(figure, run.title, handles + own)
         return figure

@@ -43,7 +43,7 @@ class Mode:
 # A column of names: stable and still are the same, seen from a slope and from one of its blocks.
 MODES = {
     "stable": Mode("#ece7dc", "", "."), "still": Mode("#ece7dc", "", "."), "none": Mode("#ece7dc", "", "."),
-    "slide": Mode("#56b4e9", "////", "s"), "topple": Mode("#e69f00", "\\\\\\\\", "^"), "slide and topple": Mode("#009e73", "xxxx", "D"),
+    "slide": Mode("#56b4e9", "----", "s"), "topple": Mode("#e69f00", "\\\\\\\\", "^"), "slide and topple": Mode("#009e73", "xxxx", "D"),
     "fall": Mode("#cc79a7", "....", "v"), "rotation": Mode("#f0e442", "oo", "P"), "unstable": Mode("#d55e00", "++", "X"),
     "undecided": Mode("#ffffff", "", "$?$"), "failed": Mode("#b0b0b0", "", "x"),
 }

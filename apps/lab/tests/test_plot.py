@@ -106,6 +106,12 @@ def test_thin_blocks_are_found(result):
     assert list(plot.thin_blocks(run)) == [1]
 
 
+def test_mechanisms_are_named_counted_and_hatched(result):
+    figure = plot.picture(talus_lab.open(tell(result)), color="mechanism")
+    assert legend(figure) == ["held", "slide (1)", "topple (1)"] and figure.axes[0].get_title(loc="left").endswith("unstable, slide and topple")
+    assert len({c.get_hatch() for c in drawn(figure)}) == 4  # none, held, slide, topple
+
+
 def test_a_scene_shows_materials_supports_and_joints(result):
     assert legend(plot.scene(talus_lab.open(result)))[:2] == ["granite (3)", "held"]
 
