@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import textwrap
 
 import matplotlib
@@ -48,7 +49,8 @@ def picture(run: Run, frame: int = -1, color: str = "displacement", forces: bool
             own += layers.draw_stress(ax, run, geometry) if stress else []
             own += layers.draw_outline(ax, run, start, f"at t = {quantity(run.times[0], 's', 4)}") if outline and geometry is now else []
             found = f"{measures.verdict(run)}, {measures.mechanism(run)}" if color == "mechanism" and geometry is now else ""
-            ax.set_title(moment(run, geometry, [colors.note, found.removesuffix(", none")]), loc="left", fontsize=9, color="#404040")
+            said = moment(run, geometry, [colors.note, found.removesuffix(", none")])
+            ax.set_title(textwrap.fill(said, max(20, int(13 * (width_cm * CM / _across(axes) - 0.8)))), loc="left", fontsize=9, color="#404040")
         color_bar(figure, axes, colors)
         finish(figure, run.title, handles + own)
         return figure
@@ -109,6 +111,10 @@ def page(run: Run, geometries: list[Geometry], width_cm: float, bar: bool, also:
     return figure, axes
 
 
+def _across(axes: list[Axes]) -> int:
+    return max(ax.get_subplotspec().colspan.stop for ax in axes)
+
+
 def _seen(run: Run, geometry: Geometry) -> np.ndarray:
     corners = geometry.corners
     present = ~run.removed(geometry.frame)[run.corner_block]
@@ -141,10 +147,15 @@ def color_bar(figure: Figure, axes: list[Axes], colors: BlockColors) -> None:
 
 
 def finish(figure: Figure, title: str, handles: list[Patch]) -> None:
+    """Title, legend and layout. The page grows by the lines that they take beyond one each."""
     inches = figure.get_figwidth()
-    figure.suptitle("\n".join(textwrap.wrap(title, int(12 * inches))), x=0.01, ha="left", fontsize=10, fontweight="bold")
+    lines = textwrap.wrap(title, int(12 * inches))
+    figure.suptitle("\n".join(lines), x=0.01, ha="left", fontsize=10, fontweight="bold")
+    rows = 1
     if handles:
         longest = max(len(handle.get_label()) for handle in handles)
-        fit = max(1, int(inches / (0.4 + 0.068 * longest)))
-        figure.legend(handles=handles, loc="outside lower center", ncols=min(len(handles), fit), columnspacing=1.2, handlelength=1.8)
+        columns = min(len(handles), max(1, int(inches / (0.35 + 0.058 * longest))))
+        rows = math.ceil(len(handles) / columns)
+        figure.legend(handles=handles, loc="outside lower center", ncols=columns, columnspacing=1.2, handlelength=1.8)
+    figure.set_figheight(figure.get_figheight() + 0.18 * (rows - 1) + 0.16 * max(len(lines) - 1, 0))
     ConstrainedLayoutEngine().execute(figure)  # once; as the figure's own engine it would draw everything twice
