@@ -153,6 +153,14 @@ void make_incidence(const Model& model, const std::vector<Contact>& list, Contac
         std::sort(index.slot_b.begin() + index.first_b[b], index.slot_b.begin() + index.first_b[b + 1]);
 }
 
+template <class Visit>
+void for_each_neighbour(const Model& model, const Contacts& contacts, const ContactIndex& index, BlockId b, Visit&& visit) {
+    if (index.chunks.empty()) return;
+    for (int i = index.first_a[b]; i < index.first_a[b + 1]; ++i) visit(model.parts.block[contacts.list[i].part_b]);
+    for (int e = index.first_b[b]; e < index.first_b[b + 1]; ++e)
+        visit(model.parts.block[contacts.list[index.slot_b[e]].part_a]);
+}
+
 }  // namespace
 
 bool remembers(const Model& model, const Contact& contact) {
@@ -207,10 +215,30 @@ void refresh_contacts(const Model& model, const Placed& placed, std::span<const 
 
 void sort_contacts_again(const Model& model, const Contacts& contacts, BlockId block, ContactIndex& index) {
     if (index.chunks.empty()) return;
-    const auto mark = [&](BlockId a) { index.chunks[a / blocks_per_chunk].sorted = false; };
-    mark(block);
+    const auto mark = [&](BlockId a, int slot) { index.chunks[a / blocks_per_chunk].changed.push_back(slot); };
+    for (int i = index.first_a[block]; i < index.first_a[block + 1]; ++i) mark(block, i);
     for (int e = index.first_b[block]; e < index.first_b[block + 1]; ++e)
-        mark(model.parts.block[contacts.list[index.slot_b[e]].part_a]);
+        mark(model.parts.block[contacts.list[index.slot_b[e]].part_a], index.slot_b[e]);
+}
+
+void find_rest(const Model& model, const State& state, const ContactIndex& index, std::span<const BlockId> changed,
+               std::span<Rest> rest) {
+    const auto rest_of = [&](BlockId b) {
+        if (!state.frozen(b)) return Rest::moving;
+        bool loaded = false;
+        for_each_neighbour(model, state.contacts, index, b, [&](BlockId other) { loaded |= !state.frozen(other); });
+        return loaded ? Rest::loaded : Rest::resting;
+    };
+    const bool all = changed.size() == rest.size();
+    for (const BlockId b : changed) {
+        rest[b] = rest_of(b);
+        if (all) continue;
+        for_each_neighbour(model, state.contacts, index, b, [&](BlockId other) {
+            if (rest[other] != Rest::moving) rest[other] = rest_of(other);
+        });
+    }
+    for (const Load& load : model.loads)
+        if (rest[load.block] == Rest::resting) rest[load.block] = Rest::loaded;
 }
 
 void sum_contacts(std::span<const BlockRange> ranges, const Contacts& contacts, const ContactIndex& index,
@@ -234,6 +262,14 @@ void sum_contacts(std::span<const BlockRange> ranges, const Contacts& contacts, 
             load[b].torque += torque;
         }
     });
+}
+
+double handed_on(const Contacts& contacts, const ContactIndex& index, BlockId block) {
+    double sum = 0.0;
+    for (int e = index.first_b[block]; e < index.first_b[block + 1]; ++e)
+        sum += contacts.reaction[index.slot_b[e]].force.norm();
+    for (int i = index.first_a[block]; i < index.first_a[block + 1]; ++i) sum += contacts.reaction[i].force.norm();
+    return 0.5 * sum;
 }
 
 StrainEnergy strain_energy(const Model& model, const Placed& placed, const State& state) {

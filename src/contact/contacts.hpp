@@ -85,6 +85,11 @@ void refresh_contacts(const Model& model, const Placed& placed, std::span<const 
 /// To be called for every block that was frozen or woken since the last update.
 void sort_contacts_again(const Model& model, const Contacts& contacts, BlockId block, ContactIndex& index);
 
+/// By State::calm and by the places of the list, of which there may be more than touch. `changed`: the blocks that froze or
+/// woke since `rest` [nb] was right.
+void find_rest(const Model& model, const State& state, const ContactIndex& index, std::span<const BlockId> changed,
+               std::span<Rest> rest);
+
 /// Geometry and law of every contact in the list but those between two frozen blocks, for velocities of the half step before
 /// `now` and a step dt (0: forces only). Adds what slip and dashpots dissipate to the ledger.
 void update_contacts(const Model& model, const Placed& placed, double dt, State& state, ContactIndex& index);
@@ -92,6 +97,9 @@ void update_contacts(const Model& model, const Placed& placed, double dt, State&
 /// load[b] += sum over its contacts, in key order. Contacts that carry nothing hold zeros, which change no bit of a sum.
 void sum_contacts(std::span<const BlockRange> ranges, const Contacts& contacts, const ContactIndex& index,
                   std::span<Force> load);
+
+/// N: half of the sum of the magnitudes of the forces on a block: what its contacts hand on from one side to the other.
+double handed_on(const Contacts& contacts, const ContactIndex& index, BlockId block);
 
 /// J, elastic energy stored in the joints now: normal and shear.
 struct StrainEnergy {

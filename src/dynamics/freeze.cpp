@@ -49,8 +49,10 @@ bool wake_disturbed(const Model& model, std::span<const BlockRange> ranges, cons
     for (const BlockRange& range : ranges)
         for (BlockId b = range.begin; b < range.end; ++b) {
             if (!state.frozen(b) || model.blocks.held(b)) continue;
-            const double most = 2.0 * calm.share * calm.gravity * model.blocks.mass[b];
-            if (out_of_balance(model.blocks, b, state.load[b]) <= most) continue;
+            const double weight = calm.gravity * model.blocks.mass[b];
+            const double disturbed = out_of_balance(model.blocks, b, state.load[b]);
+            if (disturbed <= 2.0 * calm.share * weight) continue;
+            if (disturbed <= 2.0 * calm.share * calm.handed_on(b)) continue;
             state.calm[b] = 0;
             // It counts again in the kinetic energy of the ledger.
             state.ledger.kinetic0 -=
@@ -67,10 +69,10 @@ bool freeze_calm(const Model& model, const Awake& awake, const Calm& calm, State
     for (const BlockRange& range : awake.moving)
         for (BlockId b = range.begin; b < range.end; ++b) {
             if (model.blocks.held(b)) continue;  // or driven
+            const double mass = model.blocks.mass[b];
             const double speed = state.motion.velocity[b].norm() + std::abs(state.motion.spin[b]) * model.blocks.radius[b];
-            const double slow =
-                calm.share * calm.gravity * std::sqrt(model.blocks.mass[b] / (stiffest * boundary(model, b)));
-            const double most = calm.share * calm.gravity * model.blocks.mass[b];
+            const double most = calm.share * std::max(calm.gravity * mass, calm.handed_on(b));
+            const double slow = most / std::sqrt(mass * stiffest * boundary(model, b));
             const bool is_calm = speed < slow && out_of_balance(model.blocks, b, undamped(state, b)) < most;
             state.calm[b] = is_calm ? state.calm[b] + 1 : 0;
             if (!state.frozen(b)) continue;

@@ -18,10 +18,10 @@ struct BlockWork {  // of one range, J, and its largest speed, m/s
 };
 
 // N2/kg: what the product form of the kinetic energy takes away, times dt^2/8. What is frozen does not swing.
-double force_squared(const Model& model, const State& state, std::span<const Force> load) {
+double force_squared(const Model& model, const Awake& awake, std::span<const Force> load) {
     double sum = 0.0;
-    for (int b = 0; b < model.blocks.size(); ++b)
-        if (!state.frozen(b)) sum += force_squared(model.blocks, b, load[b]);
+    for (const BlockRange& range : awake.moving)
+        for (int b = range.begin; b < range.end; ++b) sum += force_squared(model.blocks, b, load[b]);
     return sum;
 }
 
@@ -240,7 +240,7 @@ double account(const Model& model, const Awake& awake, const StepEnd& before, co
     // A halved step, or one cut at the end of its stage, belongs to another product form than that of the stage.
     if (dt != state.stage_step)
         ledger.kinetic0 += 0.125 * (state.stage_step * state.stage_step - dt * dt) *
-                           (force_squared(model, state, before.load) - force_squared(model, state, after.load));
+                           (force_squared(model, awake, before.load) - force_squared(model, awake, after.load));
     return sum.speed;
 }
 

@@ -1,9 +1,10 @@
 // Which blocks a step has to look at, when others are frozen because they are at rest.
 #pragma once
 
-#include "model/model.hpp"
-#include "model/state.hpp"
+#include "core/types.hpp"
 
+#include <cstdint>
+#include <span>
 #include <vector>
 
 namespace talus {
@@ -22,7 +23,9 @@ struct Awake {
 
 Awake all_awake(int blocks);
 
-/// By State::calm and by the places of the contact list, of which there may be more than touch.
-Awake awake(const Model& model, const State& state);
+enum class Rest : std::uint8_t { moving, loaded, resting };  // loaded: at rest, but its load may change
+
+/// [nb]
+Awake awake(std::span<const Rest> blocks);
 
 }  // namespace talus

@@ -121,7 +121,8 @@ Shape run() {
           "accept a time step above the stable estimate, and joints so soft that blocks pass through each other"},
          {"damping", damping(), fallback("{}"), "of the run"},
          {"freeze", either({choice({"never"}), number("1", {0.0, 0.1, true, false})}), derived("never, or by `accuracy`"),
-          "a block at rest is not computed while less than this share of its weight is out of balance"},
+          "a block at rest is not computed while less than this share of what its contacts hand on, or of its weight if "
+          "that is more, is out of balance"},
          {"search",
           choice({"auto", "safe-regions", "verlet", "isu", "isu-separated", "isu-parallel", "dess", "dess-fused", "direct",
                   "direct-simd", "grid"}),

@@ -60,22 +60,40 @@ std::string title(const Model& model, BlockId block) {
     return "block " + std::to_string(block) + (name.empty() ? "" : " `" + name + "`");
 }
 
+class Deepest {
+public:
+    Deepest(const Model& model, const Placed& placed) : model_(model), placed_(placed) {}
+    DeepOverlap found;
+
+    void look_at(const Contact& c) {
+        if (!c.touching || c.overlap <= 0.0) return;
+        const double least = std::min(model_.parts.thickness[c.part_a], model_.parts.thickness[c.part_b]);
+        const bool measured = c.overlap > worth_measuring * least;
+        const double thin = measured ? std::min(thickness(model_, c.part_a), thickness(model_, c.part_b)) : least;
+        const double here = measured ? depth(model_, placed_, c) : c.overlap;
+        if (here <= most_ * thin) return;
+        most_ = here / thin;
+        found = {&c, here, thin, room_share * thin, c.point};
+    }
+
+private:
+    const Model& model_;
+    const Placed& placed_;
+    double most_ = 0.0;  // of its thickness
+};
+
+std::string refusal(const Model& model, const State& state, const DeepOverlap& deepest) {
+    if (!deepest.contact || deepest.depth <= deepest.room) return {};
+    return "blocks lie in each other, and would pass through: overlap " + describe(model, deepest) + "; " +
+           remedy(model, deepest) + "; t = " + number(state.time) + " s, step " + std::to_string(state.total_steps);
+}
+
 }  // namespace
 
 DeepOverlap deepest_overlap(const Model& model, const Placed& placed, const State& state) {
-    DeepOverlap deepest;
-    double most = 0.0;  // of its thickness
-    for (const Contact& c : state.contacts.list) {
-        if (!c.touching || c.overlap <= 0.0) continue;
-        const double least = std::min(model.parts.thickness[c.part_a], model.parts.thickness[c.part_b]);
-        const bool measured = c.overlap > worth_measuring * least;
-        const double thin = measured ? std::min(thickness(model, c.part_a), thickness(model, c.part_b)) : least;
-        const double here = measured ? depth(model, placed, c) : c.overlap;
-        if (here <= most * thin) continue;
-        most = here / thin;
-        deepest = {&c, here, thin, room_share * thin, c.point};
-    }
-    return deepest;
+    Deepest deepest(model, placed);
+    for (const Contact& c : state.contacts.list) deepest.look_at(c);
+    return deepest.found;
 }
 
 std::string describe(const Model& model, const DeepOverlap& overlap) {
@@ -97,11 +115,21 @@ bool time_to_look(std::int64_t step, double speed, double dt, double thinnest) {
     return step % interval == 0;
 }
 
+bool rare_look(std::int64_t step) { return step % longest_interval == 0; }
+
 std::string no_room_left(const Model& model, const Placed& placed, const State& state) {
-    const DeepOverlap deepest = deepest_overlap(model, placed, state);
-    if (!deepest.contact || deepest.depth <= deepest.room) return {};
-    return "blocks lie in each other, and would pass through: overlap " + describe(model, deepest) + "; " +
-           remedy(model, deepest) + "; t = " + number(state.time) + " s, step " + std::to_string(state.total_steps);
+    return refusal(model, state, deepest_overlap(model, placed, state));
+}
+
+std::string no_room_left(const Model& model, const Placed& placed, const State& state, const Awake& awake,
+                         const ContactIndex& index) {
+    Deepest deepest(model, placed);
+    for (const BlockRange& range : awake.moving) {
+        for (int i = index.first_a[range.begin]; i < index.first_a[range.end]; ++i) deepest.look_at(state.contacts.list[i]);
+        for (int e = index.first_b[range.begin]; e < index.first_b[range.end]; ++e)
+            deepest.look_at(state.contacts.list[index.slot_b[e]]);
+    }
+    return refusal(model, state, deepest.found);
 }
 
 std::string no_room_left(const Model& model, const Placed& placed, const State& state, const Contact& c, double depth) {

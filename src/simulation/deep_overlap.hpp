@@ -1,6 +1,7 @@
 // Contacts pressed so deep that their forces cannot be trusted: found, told, and in the end refused.
 #pragma once
 
+#include "contact/contacts.hpp"
 #include "model/model.hpp"
 #include "model/placed.hpp"
 #include "model/state.hpp"
@@ -43,8 +44,15 @@ inline constexpr const char* rigid_remedy =
 /// that a run that was resumed looks at the same steps.
 bool time_to_look(std::int64_t step, double speed, double dt, double thinnest);
 
+/// Whether such a look is one of those that come at least.
+bool rare_look(std::int64_t step);
+
 /// What to say if two parts have no room left; empty if all have.
 std::string no_room_left(const Model& model, const Placed& placed, const State& state);
+
+/// The same, of the contacts of blocks that move.
+std::string no_room_left(const Model& model, const Placed& placed, const State& state, const Awake& awake,
+                         const ContactIndex& index);
 
 /// The same of two rigid blocks that lie in each other by `depth` (m), whether their contact carries force or not.
 std::string no_room_left(const Model& model, const Placed& placed, const State& state, const Contact& contact, double depth);

@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
 #include <sstream>
 
 namespace talus {
@@ -42,7 +44,10 @@ void Simulation::step_explicit(double dt) {
 
 // Blocks that pass through each other because the step is too long have gained energy first: then that is the cause to tell.
 void Simulation::check_overlaps() {
-    const std::string trouble = no_room_left(model_, placed_, state_);
+    // What is frozen does not come closer: it is looked at as rarely as can be.
+    const std::string trouble = state_.calm.empty() || rare_look(state_.total_steps)
+                                    ? no_room_left(model_, placed_, state_)
+                                    : no_room_left(model_, placed_, state_, awake_, contact_index_);
     if (trouble.empty()) return;
     check_energy_explicit(energy_alarm);
     throw DivergenceError(trouble);
@@ -70,7 +75,7 @@ void Simulation::update_forces(double dt) {  // dt = 0 once at the start: no sli
     const bool left = place(model_, awake_, state_.motion, skin_, placed_);
     lap(Part::place);
     if (left) refresh(skin_);
-    if (left && !state_.calm.empty()) find_awake();
+    if (left && !state_.calm.empty()) find_awake(true);
     lap(Part::search);
     update_contacts(model_, placed_, dt, state_, contact_index_);
     lap(Part::contacts);
@@ -81,17 +86,31 @@ void Simulation::update_forces(double dt) {  // dt = 0 once at the start: no sli
     lap(Part::sum);
 }
 
-void Simulation::find_awake() {
+void Simulation::find_awake(bool list_renewed) {
     const int nb = model_.blocks.size();
-    awake_ = state_.calm.empty() ? all_awake(nb) : awake(model_, state_);
+    resting_gravity_.setConstant(std::numeric_limits<double>::quiet_NaN());
     was_frozen_.resize(nb);
+    std::vector<BlockId> changed;
     for (BlockId b = 0; b < nb; ++b) {
         if (was_frozen_[b] == state_.frozen(b)) continue;
         was_frozen_[b] = state_.frozen(b);
+        changed.push_back(b);
         sort_contacts_again(model_, state_.contacts, b, contact_index_);
         if (state_.frozen(b))
             placed_.block[b] = {state_.motion.position[b], state_.motion.velocity[b], state_.motion.spin[b]};
     }
+    if (state_.calm.empty()) {
+        awake_ = all_awake(nb);
+        rest_.clear();
+        return;
+    }
+    if (rest_.empty() || list_renewed) {
+        rest_.resize(nb);
+        changed.resize(nb);
+        std::iota(changed.begin(), changed.end(), 0);
+    }
+    find_rest(model_, state_, contact_index_, changed, rest_);
+    awake_ = awake(rest_);
 }
 
 double Simulation::frozen_share() const {
@@ -103,15 +122,19 @@ void Simulation::freeze_and_wake() {
     for (const BlockRange& range : awake_.moving) moved_ += range.end - range.begin;
     // A stage that ends in equilibrium ends none the later for blocks that are frozen before.
     const double share = std::min(*scenario_.run.freeze, 0.25 * stage().until.equilibrium.value_or(1.0));
-    const Calm calm{share, std::hypot(model_.gravity_x(state_.stage_time), model_.gravity_y(state_.stage_time))};
+    const Vec2 gravity(model_.gravity_x(state_.stage_time), model_.gravity_y(state_.stage_time));
+    const Calm calm{share, std::hypot(gravity.x(), gravity.y()),
+                    [this](BlockId b) { return handed_on(state_.contacts, contact_index_, b); }};
     const bool look = state_.total_steps % freeze_interval == 0;
-    if (look) {  // their weight may have changed; nothing else can, or they would be among the loaded
+    bool changed = wake_disturbed(model_, awake_.loaded, calm, state_);
+    // Of the others only the weight may have changed, or they would be among the loaded.
+    if (look && (gravity != resting_gravity_ || !state_.release.empty())) {
+        resting_gravity_ = gravity;
         weigh(model_, awake_.resting, state_, state_.load);
         sum_contacts(awake_.resting, state_.contacts, contact_index_, state_.load);
-    }
-    bool changed = wake_disturbed(model_, awake_.loaded, calm, state_);
-    if (look) {
         changed |= wake_disturbed(model_, awake_.resting, calm, state_);
+    }
+    if (look) {
         const double before = ledger_error();
         const bool frozen = freeze_calm(model_, awake_, calm, state_);
         if (frozen) state_.ledger.local_damping += ledger_error() - before;  // the motion that was left is damped away

@@ -130,7 +130,7 @@ private:
     void come_to_rest();
     void keep_forces();
     void freeze_and_wake();
-    void find_awake();  // after blocks froze or woke
+    void find_awake(bool list_renewed = false);  // then, or after blocks froze or woke
 
     void apply_stage();  // what a stage changes in the model; idempotent
     void delete_blocks();
@@ -163,6 +163,8 @@ private:
     std::vector<std::uint8_t> reboxed_;  // [nb] 1 = got new boxes at the last refresh
     std::vector<Force> load_before_, damping_before_;
     std::vector<std::uint8_t> was_frozen_;  // [nb] as the contacts are sorted
+    std::vector<Rest> rest_;                // [nb] empty while nothing freezes
+    Vec2 resting_gravity_;                  // m/s2, for which the load of all that rests was found; NaN = not yet
     double skin_ = 0.0;
     std::unique_ptr<StaticSolver> statics_;
     std::unique_ptr<rigid::Scratch> rigid_;  // of the rigid solver, while it is at work

@@ -140,6 +140,54 @@ TEST_CASE("a column that freezes has settled to twice the share that was allowed
     }
 }
 
+// The wedge of scenarios/accuracy/sliding_wedge.yaml in larger blocks, let go from equilibrium: the rock below rings.
+const std::string wedge = R"(
+title: Wedge
+gravity: [0, -9.81]
+materials: {upper: {density: 2600}, lower: {density: 2600}}
+joints:
+  plane: {normal_stiffness: 1e9, shear_stiffness: 5e8, friction_angle_deg: 60}
+  bond: {normal_stiffness: 1e9, shear_stiffness: 5e8, friction_angle_deg: 45, cohesion: 1e9, tension: 1e9}
+contacts: {default: bond, materials: [{a: upper, b: lower, joint: plane}]}
+rock:
+  material: lower
+  outline: [[0, 0], [60, 0], [60, 5.2], [28, 40], [0, 40]]
+  joint_sets:
+    - {angle_deg: -35, spacing: 2.6, origin: [60, 4]}
+    - {angle_deg: 80, spacing: 2.6, origin: [60.26, 4]}
+  regions: {sliding: {material: upper, outline: [[60, 4], [60, 5.2], [28, 40], [8.586671757, 40]]}}
+  held: {left: true, bottom: true}
+  slivers: {area: 0.8, width: 0.4}
+initial_stress: {k0: 0.5}
+stages:
+  - {name: settle, solver: static, reset: true, until: {equilibrium: 1e-6}}
+  - {name: let go, change: {joints: {plane: {friction_angle_deg: 25}}}, until: {time: 1e-3}, damping: {contact: 4e-4}}
+run: {until: {time: 0.999}, damping: {contact: 4e-4}, freeze: 0.03}
+)";
+
+TEST_CASE("rock under a wedge that slides out is frozen while it rings by less than a share of what its joints carry") {
+    WholeRun run(scenario_of(wedge));
+    int sliding = 0;
+    run.to_the_end();
+    const Model& model = run.model();
+    double slide = 0.0;
+    for (BlockId b = 0; b < model.blocks.size(); ++b) {
+        if (model.blocks.held(b)) continue;
+        const Vec2 way = run.state().motion.position[b] - run.state().start_position[b];
+        if (model.material_names[model.blocks.material[b]] == "lower") {
+            CHECK(way.norm() < 2e-3);
+            continue;
+        }
+        slide += Vec2(std::cos(radians(-35)), std::sin(radians(-35))).dot(way);
+        ++sliding;
+    }
+    const double never_moves = 1.0 - static_cast<double>(sliding) / model.blocks.size();
+    CAPTURE(sliding, run.simulation().frozen_share());
+    CHECK(slide / sliding == Approx(0.939796).epsilon(0.01));
+    CHECK(run.simulation().frozen_share() > 0.5 * never_moves);
+    CHECK(std::abs(run.simulation().ledger_error()) < 1e-9 * run.simulation().energies().gravity);
+}
+
 TEST_CASE("frozen blocks wake when gravity grows, when a load grows and when something falls on them") {
     const char* grown_gravity = R"(
 run: {until: {time: 8}, damping: {local: 0.7}, freeze: 1e-3}
