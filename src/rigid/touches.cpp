@@ -214,27 +214,29 @@ void Touches::find(const Model& model, const Placed& placed, const State& state,
     find_impacts(bodies, before, fall, dt);
 }
 
-// What closes with more than the speed of two steps of free fall hits at a time within the step. Until then all else acts on
-// the two bodies as before: a corner about which a block has turned carries weight until the next one lands, or the block
-// would lose the share of a step each time. The impulse acts where the two are then: with the arms of the middle of the step
-// a block that rocks would lose a share of its spin that depends on where in the step it lands.
+// What closes faster than half a step of free fall hits at a time within the step, and bounces, if it does, from two steps
+// on: what rests must not. Until then all else acts on the two bodies as before: a corner about which a block has turned
+// carries weight until the next one lands, or the block would lose the share of a step each time. The impulse acts where the
+// two are then: with the arms of the middle of the step a block that rocks would lose a share of its spin that depends on
+// where in the step it lands.
 void Touches::find_impacts(const Bodies& bodies, std::span<const Velocity> before, double fall, double dt) {
     impact_.assign(bodies.size(), none);
     ahead_.assign(touches_.size(), 0.0);
     landed_.assign(2 * touches_.size(), 0.0);
     hit_.assign(2 * touches_.size(), none);
-    uneven_.assign(3 * touches_.size(), 0.0);
+    uneven_.assign(bodies.size(), {});
     bool any = false;
     for (std::size_t i = 0; i < touches_.size(); ++i) {
         Touch& c = touches_[i];
         bool hits[2] = {};
         double first = 1.0;  // share of the step that is over then
+        const double slowest = rebound_[i] > 0.0 ? 4.0 : 1.0;
         for (int end = 0; end < c.ends; ++end) {
             const double gap = manifold_[i].gap[end], change = normal_velocity(c, before, end);
             const double approach = -std::min(change, normal_velocity(c, bodies.velocity, end));
             const double bent = std::abs(bend(manifold_[i], bodies, from_a_[i], c, end).x());
             const double way = at_the_latest * dt * approach + 0.125 * bent * dt * dt;  // in half of the step
-            hits[end] = !(c.p[end] > 0.0 || -change * dt <= 4.0 * fall || std::abs(gap) > way);
+            hits[end] = !(c.p[end] > 0.0 || -change * dt <= slowest * fall || std::abs(gap) > way);
             if (!hits[end]) continue;
             // What else carries a block that does not bounce, such as the corner it rocks about, is not known here.
             const double gained = rebound_[i] > 0.0 ? normal_velocity(c, bodies.velocity, end) - change : 0.0;
@@ -254,18 +256,45 @@ void Touches::find_impacts(const Bodies& bodies, std::span<const Velocity> befor
             c.least[end] = std::max(0.0, rest * gained + leaves);
             if (c.least[end] == 0.0) continue;
             end_[2 * i + end] = End::bounces;
-            uneven_[3 * i + end] = (first - rest) * gained;
-            uneven_[3 * i + 2] = (first - rest) * (tangent_velocity(c, bodies.velocity) - tangent_velocity(c, before));
+            uneven_[c.a].bounces = uneven_[c.b].bounces = true;
             landed_[2 * i + end] = rest * dt * (leaves + 0.5 * rest * gained);
         }
     }
+    if (!any) return;
     for (Touch& c : touches_) {
-        const double share = any ? std::min(impact_[c.a], impact_[c.b]) : none;
-        for (int k = 0; k < 3 && share < 1.0; ++k) {
+        const double share = std::min(impact_[c.a], impact_[c.b]);
+        for (int k = 0; k < 3 && share <= 1.0; ++k) {
             c.earlier[k] = share * c.p[k];
             c.p[k] -= c.earlier[k];
         }
     }
+    find_uneven(bodies, before);
+}
+
+void Touches::find_uneven(const Bodies& bodies, std::span<const Velocity> before) {
+    gained_.assign(bodies.size(), {});
+    for (const Touch& c : touches_) apply(c, c.earlier, bodies.softness, gained_);
+    for (int q = 0; q < bodies.size(); ++q) {
+        const double first = impact_[q];
+        if (first > 1.0) continue;
+        const Velocity &v = bodies.velocity[q], &v0 = before[q];
+        const Velocity by_weight{v.x - v0.x, v.y - v0.y, v.spin - v0.spin};
+        const double early = first * first, late = uneven_[q].bounces ? (1.0 - first) * (1.0 - first) : 0.0;
+        uneven_[q].gained = {first * gained_[q].x + (early - late) * by_weight.x,
+                             first * gained_[q].y + (early - late) * by_weight.y,
+                             first * gained_[q].spin + (early - late) * by_weight.spin};
+    }
+}
+
+// With the velocities v0 and v1 at the start and the end of the step, g that weight and earlier impulses add until the share
+// f of it, and l that weight adds after it (nothing where the body is carried from then on): the way is dt/2 [f (2 v0 + g) +
+// (1 - f) (2 v1 - l)], that of the mean velocity dt/2 (v0 + v1).
+Velocity Touches::uneven_way(const Bodies& bodies, std::span<const Velocity> before, int body, double dt) const {
+    if (!moved_by_impact(bodies, body)) return {};
+    const Velocity &v0 = before[body], &v1 = bodies.velocity[body], &g = uneven_[body].gained;
+    const double late = 1.0 - 2.0 * impact_[body];
+    return {0.5 * dt * (late * (v1.x - v0.x) + g.x), 0.5 * dt * (late * (v1.y - v0.y) + g.y),
+            0.5 * dt * (late * (v1.spin - v0.spin) + g.spin)};
 }
 
 void Touches::add_earlier() {
@@ -457,11 +486,10 @@ void Touches::record(const Model& model, const Placed& placed, const Bodies& bod
         const Vec2 force = c.normal_force * m->normal + c.shear_force * perp(m->normal);
         const Vec2 from_b = c.point - placed.block[b].position;
         state.contacts.reaction[i] = {force, -cross(arm, force), cross(from_b, force)};
-        const double* uneven = &uneven_[3 * (t - touches_.data())];
-        state.ledger.friction -= 0.5 * (u0 + u1 + uneven[2]) * t->p[2];
+        state.ledger.friction -= 0.5 * (u0 + u1) * t->p[2];
         for (int end = 0; end < t->ends; ++end)
             state.ledger.contact_damping -=
-                0.5 * t->p[end] * (normal_velocity(*t, before, end) + normal_velocity(*t, after, end) + uneven[end]);
+                0.5 * t->p[end] * (normal_velocity(*t, before, end) + normal_velocity(*t, after, end));
     }
 }
 

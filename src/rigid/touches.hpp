@@ -57,26 +57,35 @@ public:
     /// bounce as if nothing had been before, the others are stopped.
     double energy_of_later_landings(const Bodies& bodies, double speed, double together) const;
 
+    /// m, m, rad, after the impulses were found: by how much a body goes further in this step than with the mean of its
+    /// velocities before and after, for an impact that is not in the middle of it.
+    Velocity uneven_way(const Bodies& bodies, std::span<const Velocity> before, int body, double dt) const;
+
 private:
     bool moved_by_impact(const Bodies& bodies, int body) const;  // in this step
     void find_impacts(const Bodies& bodies, std::span<const Velocity> before, double fall, double dt);
+    void find_uneven(const Bodies& bodies, std::span<const Velocity> before);
     void take_to_time_of_impact(const Bodies& bodies, std::span<const Velocity> before, double exact, double dt,
                                 std::span<Velocity> displacement) const;
 
+    struct Uneven {       // of a body with an impact
+        Velocity gained;  // m/s, rad/s: f g - (1 - f) l of uneven_way
+        bool bounces = false;
+    };
     enum class End : std::uint8_t { meets, comes_near, bounces };
 
     Deepest deepest_;
     std::vector<Touch> touches_;
-    std::vector<Manifold> manifold_;  // [touches]
-    std::vector<double> rebound_;     // [touches] restitution
-    std::vector<Vec2> from_a_;        // [touches] m, centroid of block a from that of its body
-    std::vector<End> end_;            // [2 touches] what becomes of it in this step
-    std::vector<double> landed_;      // [2 touches] m, gap of an end that bounces at the end of the step
-    std::vector<double> hit_;         // [2 touches] share of the step before it hits; above 1: it does not
-    std::vector<double> uneven_;  // [3 touches] m/s, what weight and loads add to both velocities of a bounce, at its ends
-                                  // and along it, as it is not in the middle of the step
-    std::vector<double> ahead_;   // [touches] s, after the middle of the step: when it hits, 0 = it does not
-    std::vector<double> impact_;  // [nq] share of the step before the first impact; above 1: none
+    std::vector<Manifold> manifold_;     // [touches]
+    std::vector<double> rebound_;        // [touches] restitution
+    std::vector<Vec2> from_a_;           // [touches] m, centroid of block a from that of its body
+    std::vector<End> end_;               // [2 touches] what becomes of it in this step
+    std::vector<double> landed_;         // [2 touches] m, gap of an end that bounces at the end of the step
+    std::vector<double> hit_;            // [2 touches] share of the step before it hits; above 1: it does not
+    std::vector<double> ahead_;          // [touches] s, after the middle of the step: when it hits, 0 = it does not
+    std::vector<double> impact_;         // [nq] share of the step before the first impact; above 1: none
+    std::vector<Uneven> uneven_;         // [nq]
+    std::vector<Velocity> gained_;       // [nq] by what acted before the impact
     std::vector<std::uint8_t> pressed_;  // [2 touches] an end that presses after the step
     std::vector<int> slot_;              // [touches] in the contact list
     std::vector<int> hint_;              // [contacts] see find_manifold

@@ -308,6 +308,8 @@ void Simulation::account_rigid(const Motion& start, std::span<const Vec2> middle
         const Vec2 arm = middle[b] - r.bodies->position[q];
         const double speed = at(v, arm).norm() + std::abs(v.spin) * model_.blocks.radius[b];
         speed_ = std::isfinite(speed) ? std::max(speed_, speed) : std::numeric_limits<double>::infinity();
+        const Velocity uneven = r.touches.uneven_way(*r.bodies, r.before, q, dt);
+        ledger.contact_damping += r.external[b].force.dot(at(uneven, arm)) + r.external[b].torque * uneven.spin;
         const Vec2& free = model_.blocks.inv_mass[b];
         const Vec2 weight = model_.blocks.mass[b] * g;
         const Vec2 load = r.external[b].force - weight;
