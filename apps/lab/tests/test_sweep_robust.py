@@ -224,7 +224,7 @@ def test_one_driver_does_not_wait_for_another_if_told_so(tmp_path, monkeypatch):
     assert main(["sweep", str(path), "--leave"]) == 0
     assert slow.running() and sorted(row["status"] for row in table(tmp_path)) == ["done", "done", "missing"]
     slow.end()
-    assert {row["status"] for row in table(tmp_path)} == {"done"}
+    assert {row["status"] for row in table(tmp_path)} == {"done"}  # those that the first one has left, too
 
 
 @pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM])
@@ -318,6 +318,15 @@ def test_dask_gives_the_same_table(tmp_path, monkeypatch):
     sweep.sweep(path, 2, "dask")
     assert [{key: value for key, value in row.items() if key not in ("started", "wall_time")} for row in table(tmp_path)] == local
     assert len(runs(here)) == 12
+
+
+def test_ctrl_c_ends_dask_too():
+    pytest.importorskip("distributed")
+    with pytest.raises(KeyboardInterrupt), engine_of("dask", 1) as engine:
+        call = engine.executor.submit(time.sleep, 60)
+        began = time.monotonic()
+        raise KeyboardInterrupt
+    assert time.monotonic() - began < 20 and not (call.done() and not call.cancelled() and call.exception() is None)
 
 
 def test_a_dask_worker_that_is_killed_loses_no_case(tmp_path, monkeypatch):

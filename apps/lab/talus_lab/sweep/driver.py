@@ -8,6 +8,7 @@ import time
 from collections import Counter
 from concurrent.futures import CancelledError, Future
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Mapping, Sequence
 
 from talus_lab.errors import ResultError
@@ -48,7 +49,9 @@ class Sweep:
         return Counter(self.records[name].get("status", "missing") for name in self.tasks)
 
     def write(self) -> None:
-        """The table of what is known now. Raises DiskError."""
+        """The table of what is known now, to others too. Raises DiskError."""
+        for case, task in self.tasks.items():
+            self.records[case] = self.records[case] or read_status(Path(task.folder))
         try:
             write_tables(self.config, columns_of(self.config, self.cases, self.records))
         except OSError as error:

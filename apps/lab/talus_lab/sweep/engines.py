@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from concurrent.futures import Executor
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 from typing import Any, Callable, Iterator, Mapping
 
@@ -19,7 +19,6 @@ QUEUES = {"slurm": "SLURMCluster", "pbs": "PBSCluster"}
 class Engine:
     executor: Executor
     workers: Callable[[], int]  # how many there are now
-    name: str
 
 
 def cores() -> int:
@@ -27,24 +26,22 @@ def cores() -> int:
     return len(os.sched_getaffinity(0))
 
 
-@contextmanager
-def engine_of(name: str, workers: int, scheduler: str = "", cluster: Mapping[str, Any] = {}) -> Iterator[Engine]:
+def engine_of(name: str, workers: int, scheduler: str = "", cluster: Mapping[str, Any] = {}) -> AbstractContextManager[Engine]:
     """Left by an exception, it ends what runs."""
     if name not in ENGINES:
         raise ResultError(f"engine: {name}{nearest(name, ENGINES)}")
-    made = _dask(workers, scheduler, cluster) if name == "dask" or scheduler else _local(workers)
-    with made as engine:
-        try:
-            yield engine
-        except BaseException:
-            engine.executor.shutdown(wait=True, cancel_futures=True)
-            raise
-        engine.executor.shutdown(wait=True)
+    return _dask(workers, scheduler, cluster) if name == "dask" or scheduler else _local(workers)
 
 
 @contextmanager
 def _local(workers: int) -> Iterator[Engine]:
-    yield Engine(LocalPool(workers), lambda: workers, f"{workers} worker{'s' if workers != 1 else ''} on this machine")
+    pool = LocalPool(workers)
+    try:
+        yield Engine(pool, lambda: workers)
+    except BaseException:
+        pool.shutdown(cancel_futures=True)
+        raise
+    pool.shutdown()
 
 
 @contextmanager
@@ -63,9 +60,9 @@ def _dask(workers: int, scheduler: str, cluster: Mapping[str, Any]) -> Iterator[
         owned = _queue(cluster) if cluster else distributed.LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address=None)
         client = distributed.Client(owned)
     try:
-        yield Engine(client.get_executor(pure=False), lambda: max(1, sum(client.nthreads().values())), f"Dask at {client.scheduler.address}")
+        yield Engine(client.get_executor(pure=False), lambda: sum(client.nthreads().values()))
     finally:
-        client.close()
+        client.close()  # what is left of its calls is not made
         if owned:
             owned.close()
 
