@@ -33,9 +33,9 @@ def bare(ax: Axes, title: str) -> None:
     ax.spines[["top", "right"]].set_visible(False)
 
 
-def save_small(figure: Figure, path: Path) -> None:
-    """As PNG of 64 colours: a third of the size, and nothing to be seen of it."""
+def save_small(figure: Figure, path: Path, colors: int = 64) -> None:
+    """As PNG of few colours: a third of the size, and nothing to be seen of it. Pictures with a colour bar need 200."""
     figure.savefig(path)
     with Image.open(path) as picture:
-        small = picture.convert("RGB").quantize(64)
+        small = picture.convert("RGB").quantize(colors)
     small.save(path, optimize=True)
