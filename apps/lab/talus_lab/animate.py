@@ -17,7 +17,7 @@ from talus_lab.errors import ResultError
 from talus_lab.fields import Field
 from talus_lab.layers import Geometry
 from talus_lab.movie import movie
-from talus_lab.plot import color_bar, finish, moment, page
+from talus_lab.plot import caption, color_bar, finish, moment, page
 from talus_lab.run import Run
 from talus_lab.style import STYLE, WIDTH_CM
 
@@ -127,6 +127,6 @@ class _Stage:
         if self.scale is not None:
             mappable = ScalarMappable(self.scale.norm, self.scale.cmap)
             color_bar(self.figure, [self.ax], BlockColors(np.empty((0, 4)), mappable, self.scale.label, self.scale.extend))
-        self.caption = self.ax.set_title(" ", loc="left", fontsize=9, color="#404040")
+        self.caption = caption(self.ax, " ", self.figure.get_figwidth())
         finish(self.figure, self.run.title, [layers.held_handle()] * bool(self.run.blocks["held"].any()) + list(handles.values()))
         self.canvas.draw()

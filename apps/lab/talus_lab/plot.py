@@ -11,6 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.patches import Patch
+from matplotlib.text import Text
 
 from talus_lab import layers, measures
 from talus_lab.colors import BlockColors, block_colors, check_color, plain
@@ -49,8 +50,7 @@ def picture(run: Run, frame: int = -1, color: str = "displacement", forces: bool
             own += layers.draw_stress(ax, run, geometry) if stress else []
             own += layers.draw_outline(ax, run, start, f"at t = {quantity(run.times[0], 's', 4)}") if outline and geometry is now else []
             found = f"{measures.verdict(run)}, {measures.mechanism(run)}" if color == "mechanism" and geometry is now else ""
-            said = moment(run, geometry, [colors.note, found.removesuffix(", none")])
-            ax.set_title(textwrap.fill(said, max(20, int(13 * (width_cm * CM / _across(axes) - 0.8)))), loc="left", fontsize=9, color="#404040")
+            caption(ax, moment(run, geometry, [colors.note, found.removesuffix(", none")]), width_cm * CM / _across(axes))
         color_bar(figure, axes, colors)
         finish(figure, run.title, handles + own)
         return figure
@@ -67,7 +67,7 @@ def scene(run: Run, width_cm: float = WIDTH_CM) -> Figure:
         handles = colors.handles + [layers.held_handle()] * bool(run.blocks["held"].any())
         handles += layers.draw_joints(ax, run, geometry, "name")
         handles += layers.mark(ax, run.position(0)[thin], f"thin blocks ({len(thin)})")
-        ax.set_title(f"{run.block_count:,} blocks, not run yet", loc="left", fontsize=9, color="#404040")
+        caption(ax, f"{run.block_count:,} blocks, not run yet", width_cm * CM)
         finish(figure, run.title, handles)
         return figure
 
@@ -102,7 +102,8 @@ def page(run: Run, geometries: list[Geometry], width_cm: float, bar: bool, also:
         ax.set(aspect="equal", xlim=(low[0] - margin, high[0] + margin), ylim=(low[1] - margin, high[1] + margin))
         ax.tick_params(width=0.5, length=3)
         ax.ticklabel_format(useOffset=False, style="plain")  # map coordinates in full: whoever reads them looks there
-        ax.locator_params(nbins=max(3, int(1.3 * width_cm * CM / columns)))
+        ax.locator_params(axis="x", nbins=max(1, int(1.6 * inches * width)))
+        ax.locator_params(axis="y", nbins=max(2, int(2.5 * inches * height)))
         ax.spines[["top", "right"]].set_visible(False)
         if ax.get_subplotspec().is_last_row():
             ax.set_xlabel("x in m")
@@ -129,6 +130,13 @@ def moment(run: Run, geometry: Geometry, notes: list[str]) -> str:
     if run.status not in ("", "complete"):
         words.append(run.status)
     return " · ".join([*words, *filter(None, notes)])
+
+
+def caption(ax: Axes, text: str, inches: float) -> Text:
+    """Above an axes that has so many inches of the page for itself; in the middle of one that is too narrow for it."""
+    narrow = ax.viewLim.height > 2 * ax.viewLim.width
+    text = textwrap.fill(text, max(20, int(13 * (inches - 0.8))))
+    return ax.set_title(text, loc="center" if narrow else "left", fontsize=9, color="#404040")
 
 
 def color_bar(figure: Figure, axes: list[Axes], colors: BlockColors) -> None:
