@@ -251,11 +251,11 @@ def test_ctrl_c_ends_the_children_and_leaves_their_cases_to_the_next_call(tmp_pa
 @pytest.mark.skipif(os.geteuid() != 0 or shutil.which("unshare") is None, reason="a small disk needs root and unshare")
 def test_a_full_disk_leaves_nothing_half_written_and_the_next_call_completes(tmp_path, monkeypatch):
     stand_in(tmp_path, monkeypatch)
-    path = many(tmp_path, 8, output="disk/out", keep="results")
+    path = many(tmp_path, 8, output="disk/out", keep="results")  # half a megabyte each
     (tmp_path / "disk").mkdir()
     call = f"{sys.executable} -m talus_lab.cli sweep {path} --workers 2"
     look = "find disk/out/cases -name status.json | wc -l; find disk -name '*part*' -o -name 'lock.*' -o -name 'owner.*' | wc -l"
-    script = f"mount -t tmpfs -o size=900k talus disk || exit 77; {call}; echo code $?; {look}; mount -o remount,size=20M disk; {call}; echo code $?; {look}"
+    script = f"mount -t tmpfs -o size=1700k talus disk || exit 77; {call}; echo code $?; {look}; mount -o remount,size=20M disk; {call}; echo code $?; {look}"
     environment = os.environ | {"PYTHONPATH": os.pathsep.join(word for word in sys.path if word)}
     found = subprocess.run(["unshare", "--mount", "sh", "-c", script], cwd=tmp_path, env=environment, text=True, capture_output=True)
     if found.returncode == 77 or "unshare" in found.stderr:
