@@ -45,6 +45,7 @@ public:
 
 private:
     static std::string method(const Scenario& scenario, const Trial& trial) {
+        if (scenario.run.rounding_length) return trial.solver + " rounded";
         return scenario.run.face_path ? trial.solver : trial.solver + " general";
     }
     std::ofstream file_;

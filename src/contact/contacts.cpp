@@ -4,6 +4,7 @@
 #include "contact/face_path.hpp"
 #include "contact/idle.hpp"
 #include "contact/joint_memory.hpp"
+#include "contact/rounded_corners.hpp"
 #include "core/parallel.hpp"
 #include "model/part_boxes.hpp"
 #include "model/supports.hpp"
@@ -281,7 +282,9 @@ StrainEnergy strain_energy(const Model& model, const Placed& placed, const State
         const PlacedPart a(model, placed, c.part_a), b(model, placed, c.part_b);
         Vec2 d = state.motion.position[model.parts.block[c.part_b]] - state.motion.position[model.parts.block[c.part_a]];
         d -= c.dilation * c.normal;
-        if (c.edge_a < 0 || c.edge_b < 0) {
+        if (model.rounding_length > 0.0) {
+            energy.normal += joint.kn * rounded_energy(model, a, b, d.x(), d.y());
+        } else if (c.edge_a < 0 || c.edge_b < 0) {
             energy.normal += joint.kn * distance_potential_energy(a, b, d.x(), d.y());
         } else if (c.face < 0) {
             energy.normal += joint.kn * face_energy(a, b, d.x(), d.y(), c.edge_a - a.first, c.edge_b - b.first, nullptr);

@@ -2,6 +2,7 @@
 
 #include "contact/distance_potential.hpp"
 #include "contact/joint_memory.hpp"
+#include "contact/rounded_corners.hpp"
 
 #include <algorithm>
 
@@ -86,7 +87,7 @@ double SingleContacts::face_length(const Contact& c) const {
 
 std::optional<CornerSlot> SingleContacts::corners(int i) const {
     const Contact& c = contacts_.list[i];
-    if (c.face >= 0 || c.edge_a >= 0 || !c.touching) return {};
+    if (c.face >= 0 || c.edge_a >= 0 || !c.touching || model_.rounding_length > 0.0) return {};
     const Couple s = thickened(c, couple(model_, placed_, c));
     std::optional<CornerSlot> found = find_corners(model_, c, s);
     if (!found || !corner_pair(corner_lines(placed_, *found, s.dx, s.dy)).valid) return {};
@@ -119,6 +120,7 @@ Pressed SingleContacts::press(Contact& c, const Couple& s, Separation& apart) {
     c.edge_a = c.edge_b = -1;
     apart = separation(s.a, s.b, s.dx, s.dy);
     if (apart.distance >= -touch_depth(model_, c.part_a, c.part_b)) return {};
+    if (model_.rounding_length > 0.0) return rounded_contact(model_, s.a, s.b, s.dx, s.dy);
     if (const auto found = find_corners(model_, c, s)) {
         const CornerPair pair = corner_pair(corner_lines(placed_, *found, s.dx, s.dy));
         changed |= pair.valid;  // from now on one of many

@@ -38,11 +38,16 @@ Stiffness largest_stiffness(const Model& model) {
     return most;
 }
 
-// Adds the stiffness of a stretch of length l with middle `arm` and unit tangent t, spread evenly along it.
-void add_face(Matrix3& k, const Vec2& arm, const Vec2& normal, double length, double kn, double ks) {
+// A stretch of a face as two springs of half its length each: at the Gauss points, which integrate the quadratic exactly,
+// for stiffness spread evenly; at its ends for springs at rounded corners.
+double inward(const Model& model) { return model.rounding_length > 0.0 ? 1.0 : std::sqrt(3.0); }
+
+// Adds the stiffness of a stretch of length l with middle `arm`.
+void add_face(const Model& model, Matrix3& k, const Vec2& arm, const Vec2& normal, double face, double kn, double ks) {
     const Vec2 tangent = perp(normal);
-    for (const double at : {-0.5, 0.5}) {  // two Gauss points integrate the quadratic exactly
-        const Vec2 r = arm + tangent * (at * length / std::sqrt(3.0));
+    const double length = face + 2.0 * model.rounding_length;  // no spring of a corner has less than the rounding length
+    for (const double at : {-0.5, 0.5}) {
+        const Vec2 r = arm + tangent * (at * face / inward(model));
         const Vector3 n(normal.x(), normal.y(), cross(r, normal)), t(tangent.x(), tangent.y(), cross(r, tangent));
         k += 0.5 * length * (kn * n * n.transpose() + ks * t * t.transpose());
     }
@@ -85,7 +90,7 @@ std::vector<Spring> springs_of(const Model& model, const State& state) {
         const Vec2 tangent = perp(c.normal);
         const Joint& joint = model.joints[c.joint];
         for (const double at : {-0.5, 0.5}) {
-            const Vec2 p = c.point + tangent * (at * c.length / std::sqrt(3.0));
+            const Vec2 p = c.point + tangent * (at * c.length / inward(model));
             springs.push_back({a, b, p - state.motion.position[a], p - state.motion.position[b], c.normal,
                                0.5 * joint.kn * c.length, 0.5 * joint.ks * c.length});
         }
@@ -143,7 +148,7 @@ std::vector<Matrix3> boundary_stiffness(const Model& model, const Placed& placed
     for (BlockId b = 0; b < model.blocks.size(); ++b) {
         if (removed[b] || model.blocks.held(b)) continue;
         for_each_edge(model, placed, b, [&](int k, const Vec2& middle) {
-            add_face(all[b], middle, placed.corner[k].normal, model.corners.length[k], most.kn[b], most.ks[b]);
+            add_face(model, all[b], middle, placed.corner[k].normal, model.corners.length[k], most.kn[b], most.ks[b]);
         });
     }
     return all;
@@ -167,7 +172,7 @@ StableStep stable_step(const Model& model, const Placed& placed, const State& st
             if (model.corners.length[k] <= length) return;
             length = model.corners.length[k];
             longest.setZero();
-            add_face(longest, middle, placed.corner[k].normal, length, most.kn[b], most.ks[b]);
+            add_face(model, longest, middle, placed.corner[k].normal, length, most.kn[b], most.ks[b]);
         });
         const double here = 2.0 * largest_eigenvalue(whole[b], free);
         if (here > bound) bound = here, step.block = b;

@@ -6,6 +6,7 @@
 #include "model/joints.hpp"
 #include "model/neighbours.hpp"
 #include "model/rock.hpp"
+#include "model/rounding.hpp"
 #include "model/select.hpp"
 #include "model/shapes.hpp"
 #include "model/supports.hpp"
@@ -37,6 +38,7 @@ private:
     void set_initial_stress();
     void set_state();
     void set_loads();
+    void round_corners();
 
     int material(const std::string& name, const Where& where, const std::string& key);
     std::string title(BlockId block) const;
@@ -222,6 +224,25 @@ void Builder::set_loads() {
     for (Load& load : make_loads(model_, scene_.state, scenario_.loads)) model_.loads.push_back(std::move(load));
 }
 
+void Builder::round_corners() {
+    if (!scenario_.run.rounding_length) return;
+    const auto concave = [&](BlockId b) { return model_.blocks.first_part[b + 1] > model_.blocks.first_part[b] + 1; };
+    int count = 0;
+    BlockId first = -1;
+    for (BlockId b = model_.blocks.size(); b-- > 0;)
+        if (concave(b)) ++count, first = b;
+    if (count > 0)
+        fault(where(first), "run.rounding_length",
+              "rounds convex blocks only, and " + std::to_string(count) + " are concave, the first of them " + title(first) +
+                  "; leave it out, or cut them into convex ones");
+    if (!model_.faces.empty())
+        fault({scenario_.file, 0}, "initial_stress",
+              "is not available with run.rounding_length; let the joints take up their load in a stage that settles");
+    throw_faults();
+    model_.rounding_length = *scenario_.run.rounding_length;
+    model_.corners.cut = corner_cuts(model_, model_.rounding_length);
+}
+
 Scene Builder::build() {
     model_.origin = scenario_.origin;
     name_materials();
@@ -237,6 +258,7 @@ Scene Builder::build() {
     find_touching_parts();
     set_joints();
     set_initial_stress();
+    round_corners();
     set_state();
     set_loads();
     scene_.report.warnings = warnings(scenario_, scene_.model, neighbours_, prestress_, scene_.report.faces_per_joint);

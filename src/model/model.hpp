@@ -41,6 +41,7 @@ struct Corners {                 // edge k of a part runs from corner k to the n
     std::vector<double> offset;  // [nc] m, normal . arm: distance of the edge line from the centroid
     std::vector<double> length;  // [nc] m, of the edge
     std::vector<std::uint8_t> internal;  // [nc] 1 = edge between two parts of one block
+    std::vector<double> cut;  // [nc] m, where the arc of a rounded corner leaves its edges; empty = corners are sharp
     int size() const { return static_cast<int>(arm.size()); }
 };
 
@@ -105,6 +106,7 @@ struct Model {
     double contact_damping = 0.0;    // s
     double release_time = 0.0;       // s over which the forces of deleted blocks fade in this stage
     bool face_path = true;
+    double rounding_length = 0.0;   // m, of corners that touch at points, see rounded_corners.hpp; 0 = they are sharp
     Vec2 box_axis = Vec2::UnitX();  // unit, the first axis along which boxes of parts are taken, see box_axes.hpp
 
     int cells() const { return faces.empty() ? 0 : faces.back().first_cell + joints[faces.back().joint].cells; }

@@ -64,6 +64,12 @@ std::vector<std::string> warnings(const Scenario& scenario, const Model& model, 
     if (prestress.tension_dropped > 0)
         all.push_back("initial stress pulls on " + std::to_string(prestress.tension_dropped) +
                       " face(s) whose joint has no tension: set to zero there");
+    const double length = model.rounding_length;
+    if (const auto less = std::ranges::count_if(model.corners.cut, [&](double cut) { return cut < length; }); less > 0)
+        all.push_back(std::to_string(less) +
+                      " corner(s) are rounded from less than the rounding length, because an edge or the block is too "
+                      "small, the least from " +
+                      number(*std::ranges::min_element(model.corners.cut)) + " m");
     return all;
 }
 

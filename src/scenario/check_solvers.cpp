@@ -53,6 +53,29 @@ void check_joints(const Cursor& joints, bool any_rigid, bool all_rigid, bool may
     }
 }
 
+// Contacts at points carry force and friction, nothing else; solvers without springs have no use for them.
+void check_rounding(const Scenario& scenario, const Cursor& at) {
+    const Cursor rounding = at["run"]["rounding_length"];
+    if (!rounding.given()) return;
+    const std::string geometry = "the geometry of rounded corners ";
+    if (!scenario.run.face_path)
+        rounding.fault("run.face_path: false asks for the general form, which has sharp corners; leave one of them out");
+    if (scenario.run.accuracy)
+        rounding.fault("what an accuracy chooses is known for sharp corners only; leave one of them out");
+    bool others = scenario.run.solver != "explicit" && scenario.run.solver != "auto";
+    for (const StageSpec& stage : scenario.stages) others |= stage.solver != "explicit" && stage.solver != "auto";
+    if (others)
+        rounding.fault(geometry + "belongs to the explicit solver; leave it out, or use solver: explicit throughout");
+    const auto check_strength = [&](const Cursor& joints) {
+        for (const auto& [name, joint] : joints.names())
+            for (const char* key : {"cohesion", "tension"})
+                if (joint[key].number() > 0.0)
+                    joint[key].fault(geometry + "(run.rounding_length) has no bonds; leave one of them out");
+    };
+    check_strength(at["joints"]);
+    for (const Cursor& stage : at["stages"].items()) check_strength(stage["change"]["joints"]);
+}
+
 }  // namespace
 
 void check_solvers(const Scenario& scenario, const Cursor& at) {
@@ -69,6 +92,7 @@ void check_solvers(const Scenario& scenario, const Cursor& at) {
     }
     if (last) check_damping(at["run"], false);
     check_joints(at["joints"], any, all, open);
+    check_rounding(scenario, at);
     if (!last) return;
     check_accuracy(at["run"]["accuracy"]["joint_stress"]);
     for (const Cursor& history : at["record"]["history"].items()) check_observed(history, history["component"].text());

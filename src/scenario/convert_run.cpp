@@ -105,6 +105,8 @@ RunSpec convert_run(const Cursor& at) {
     run.search = at["search"].text();
     run.skin = at["skin"].maybe_number();
     run.face_path = at["face_path"].yes();
+    run.rounding_length = at["rounding_length"].maybe_number();
+    run.rounding_where = at["rounding_length"].where();
     run.threads = static_cast<int>(at["threads"].number());
     return run;
 }

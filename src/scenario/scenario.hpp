@@ -205,8 +205,10 @@ struct RunSpec {
     DampingSpec damping;
     std::optional<double> freeze;  // share of its weight below which a block at rest is frozen; absent: never
     std::string search = "auto";
-    std::optional<double> skin;  // m; absent: automatic
-    bool face_path = true;       // closed-form path for faces; false: general distance potential everywhere
+    std::optional<double> skin;             // m; absent: automatic
+    bool face_path = true;                  // closed-form path for faces; false: general distance potential everywhere
+    std::optional<double> rounding_length;  // m, of corners that touch at points; absent: distance potential
+    Where rounding_where;
     int threads = 1;
 };
 

@@ -130,6 +130,9 @@ Shape run() {
          {"skin", either({choice({"auto"}), number("m", not_negative)}), fallback("auto"),
           "how far a block moves before neighbours are searched again"},
          {"face_path", boolean(), fallback("true"), "closed form for faces; false: the general form everywhere"},
+         {"rounding_length", number("m", positive), optional,
+          "the classical geometry for comparison: corners rounded from this far, pressed as point springs; a hundredth of "
+          "an edge, say"},
          {"threads", integer({1, 1024}), fallback("1"), "number of threads"}});
 }
 

@@ -451,3 +451,18 @@ TEST_CASE("warnings name what was hardly meant") {
     CHECK(build(with({held(block("base", rectangle(0, 0, 1, 1))), block("top", rectangle(0, 1, 1, 2))}))
               .report.warnings.empty());
 }
+
+TEST_CASE("corners of concave blocks and joints under initial stress cannot be rounded; short edges are told") {
+    const Polygon bracket{{0, 0}, {3, 0}, {3, 1}, {1, 1}, {1, 2}, {0, 2}};
+    Scenario scene = with({held(block("base", rectangle(0, -1, 3, 0))), block("bracket", bracket)});
+    scene.run.rounding_length = 0.01;
+    CHECK(report_of(scene).find("1 are concave, the first of them block `bracket`") != std::string::npos);
+    scene.blocks[1].outline = rectangle(0, 0, 1, 0.015);
+    REQUIRE(report_of(scene).empty());
+    const std::vector<std::string> told = build(scene).report.warnings;
+    REQUIRE(told.size() == 1);
+    CHECK(told[0].find("the least from 0.0075 m") != std::string::npos);
+    scene.initial_stress.emplace();
+    scene.initial_stress->joints = {{"plain", 1e5, 0.0}};
+    CHECK(report_of(scene).find("initial_stress: is not available with run.rounding_length") != std::string::npos);
+}

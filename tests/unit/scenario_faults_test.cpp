@@ -254,3 +254,18 @@ TEST_CASE("a file that cannot be read is refused by name") {
     check_fault(with("outline: [[0, 0], [60, 0], [60, 15], [40, 15], [25, 40], [0, 40]]", "outline_file: gone.geojson"),
                 "f.yaml:", "gone.geojson");
 }
+
+TEST_CASE("rounded corners are refused where they cannot be: other solvers, bonds, the general form, an accuracy") {
+    const std::string joint = "joints: {rough: {normal_stiffness: 1e9, shear_stiffness: 5e8, friction_angle_deg: 30";
+    const auto scene = [&](const std::string& run, const std::string& strength = "") {
+        return with("run: {until: {time: 1}}",
+                    joint + strength + "}}\nrun: {until: {time: 1}, rounding_length: " + run + "}", small_scenario);
+    };
+    CHECK(faults_of(scene("0.01")).empty());
+    check_fault(scene("0"), "f.yaml:5 run.rounding_length", "> 0");
+    check_fault(scene("0.01, solver: rigid"), "f.yaml:5 run.rounding_length", "belongs to the explicit solver");
+    check_fault(scene("0.01, face_path: false"), "f.yaml:5 run.rounding_length", "leave one of them out");
+    check_fault(scene("0.01, accuracy: 1e-2"), "f.yaml:5 run.rounding_length", "leave one of them out");
+    check_fault(scene("0.01", ", cohesion: 1e4"), "f.yaml:4 joints.rough.cohesion", "no bonds");
+    check_fault(scene("0.01", ", tension: 1e4"), "f.yaml:4 joints.rough.tension", "no bonds");
+}
