@@ -11,7 +11,7 @@ import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.cm import ScalarMappable
 
-from talus_lab import fields, layers
+from talus_lab import fields, forces, layers
 from talus_lab.colors import BlockColors, Scale, block_colors, check_color, field_scale
 from talus_lab.errors import ResultError
 from talus_lab.fields import Field
@@ -62,8 +62,8 @@ class _Stage:
         self.run, self.shown = run, shown
         self.start = Geometry(run, 0, shown.exaggerate)
         self.scale = self._scale(seen)
-        self.largest_force = max((layers.largest_force(run, k) for k in seen), default=0.0) if shown.forces else 0.0
-        self.largest_stress = max((layers.largest_stress(run, k) for k in seen), default=0.0) if shown.stress else 0.0
+        self.largest_force = max((forces.largest_force(run, k) for k in seen), default=0.0) if shown.forces else 0.0
+        self.largest_stress = max((forces.largest_stress(run, k) for k in seen), default=0.0) if shown.stress else 0.0
         ends = [Geometry(run, k, shown.exaggerate) for k in (seen[0], seen[len(seen) // 2], seen[-1])]
         self.figure, (self.ax,) = page(run, ends[-1:], width_cm, self.scale is not None, ends)
         self.figure.set_dpi(dpi)
@@ -94,9 +94,9 @@ class _Stage:
         if shown.joints or shown.color == "joint_state":
             handles = handles + layers.draw_joints(ax, run, geometry, "state")
         if shown.forces:
-            handles = handles + layers.draw_forces(ax, run, geometry, self.largest_force)
+            handles = handles + forces.draw_forces(ax, run, geometry, self.largest_force)
         if shown.stress:
-            handles = handles + layers.draw_stress(ax, run, geometry, self.largest_stress)
+            handles = handles + forces.draw_stress(ax, run, geometry, self.largest_stress)
         if shown.outline:
             handles = handles + layers.draw_outline(ax, run, self.start, "at the start")
         return handles

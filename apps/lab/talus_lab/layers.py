@@ -1,4 +1,4 @@
-"""What a picture is painted with: blocks, supports, joints, contact forces. Each function adds one layer to an axes."""
+"""What a picture is painted with: blocks, supports, joints, outlines. Each function adds one layer to an axes; forces.py has more."""
 
 from __future__ import annotations
 
@@ -13,15 +13,14 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.path import Path
 
-from talus_lab.run import JOINT_STATES, Run, placed
+from talus_lab.arrays import placed
+from talus_lab.run import JOINT_STATES, Run
 from talus_lab.silhouette import silhouette
-from talus_lab.stress import block_stress, contact_force, principal
 from talus_lab.style import EDGE, HELD, NAME_COLORS, STATE_COLORS
-from talus_lab.units import quantity
 
 OPEN = JOINT_STATES.index("open")
 LIGHT = 0.01  # of the mean contact force
-PRESSED, PULLED, BEFORE = "#a50026", "#0072b2", "#000000"
+BEFORE = "#000000"
 TOGETHER = 500  # polygons or lines in one path: ten times as many take as long; the renderer refuses paths of a hundred thousand
 OUTLINED = 30  # blocks: of so many each one's outline can be told apart, of more only that of the whole
 
@@ -95,7 +94,7 @@ def draw_blocks(ax: Axes, run: Run, geometry: Geometry, colors: np.ndarray, hatc
     drawn.append(PathCollection(_segments(start[shown], end[shown]), facecolor="none", edgecolors=EDGE, capstyle="round",
                                 linewidths=width(ax, run, 0.03, 0.12, 0.6), zorder=2))
     for collection in drawn:
-        _add(ax, collection)
+        add(ax, collection)
     return drawn
 
 
@@ -146,7 +145,7 @@ def draw_joints(ax: Axes, run: Run, geometry: Geometry, by: str) -> list[Line2D]
         middle, half, block = middles[rows], along[rows], contacts["block_a"][rows]
         ends = [geometry.carried(middle + sign * half, block) for sign in (-1, 1)]
         plain = by == "state" and name == "elastic"  # the usual case stays in the background
-        _add(ax, LineCollection(np.stack(ends, axis=1), colors=color, linewidths=0.4 * wide if plain else wide,
+        add(ax, LineCollection(np.stack(ends, axis=1), colors=color, linewidths=0.4 * wide if plain else wide,
                                          zorder=3 if plain else 4))
         handles.append(Line2D([], [], color=color, linewidth=2.2, label=f"{name} ({rows.sum()})"))
     return handles
@@ -155,7 +154,7 @@ def draw_joints(ax: Axes, run: Run, geometry: Geometry, by: str) -> list[Line2D]
 def _middles(run: Run, frame: int, contacts) -> np.ndarray:
     """[n, 2] m: middles of the stretches along which contacts touch. The point of a contact is its centre of pressure, which
     lies beside the middle where the stress is uneven: the line is moved until it lies between the ends of both parts."""
-    point = _points(contacts)
+    point = points_of(contacts)
     along = np.column_stack([-contacts["ny"], contacts["nx"]]).astype(float)
     start = run.corners(frame)
     after = np.arange(len(start)) + 1
@@ -187,69 +186,6 @@ def shown_state(contacts) -> np.ndarray:
     return np.where(light & (contacts["state"] == sliding), slipped, contacts["state"])
 
 
-def largest_force(run: Run, frame: int) -> float:
-    """N per m, of the contacts of a frame."""
-    contacts = run.contacts(frame)
-    return float(np.hypot(*contact_force(contacts).T).max(initial=0.0)) if contacts else 0.0
-
-
-def draw_forces(ax: Axes, run: Run, geometry: Geometry, largest: float | None = None) -> list[Line2D]:
-    """Contact forces as lines through the point where they act, along the force, as wide as the force is large. largest: N per m, that
-    of the widest line; default: the largest of this frame."""
-    contacts = run.contacts(geometry.frame)
-    if not contacts or not len(contacts["x"]):
-        return []
-    force = contact_force(contacts)
-    size = np.hypot(*force.T)
-    largest = largest or size.max()
-    if largest == 0:
-        return []
-    handles, widest = [], width(ax, run, 0.2, 1.0, 5.0)
-    for label, color, pulls in (("contact force", PRESSED, False), ("tension", PULLED, True)):
-        rows = (size > 0.01 * largest) & ((contacts["normal_force"] < 0) == pulls)
-        if not rows.any():
-            continue
-        half = force[rows] / size[rows, None] * (0.35 * block_size(run))
-        middle = geometry.carried(_points(contacts)[rows], contacts["block_a"][rows])
-        _add(ax, LineCollection(np.stack([middle - half, middle + half], axis=1), colors=color,
-                                         linewidths=widest * size[rows] / largest, zorder=5))
-        handles.append(Line2D([], [], color=color, linewidth=widest * size[rows].max() / largest,
-                              label=f"{label}, largest {quantity(size[rows].max(), 'N')}/m"))
-    return handles
-
-
-def largest_stress(run: Run, frame: int) -> float:
-    """Pa, of the principal stresses of the blocks of a frame, but for the largest 0.1 %."""
-    size = np.abs(np.concatenate(principal(block_stress(run, frame))[:2]))
-    return float(np.percentile(size[~np.isnan(size)], 99.9)) if not np.isnan(size).all() else 0.0
-
-
-def draw_stress(ax: Axes, run: Run, geometry: Geometry, largest: float | None = None) -> list[Line2D]:
-    """Principal stresses of each block as a cross at its centroid, arms as long as the stress is large, tension in another
-    colour. largest: Pa, that of the longest arm; default: that of this frame, but for a tenth of a per cent of the blocks, so that one
-    that is nipped between two corners does not shrink all others."""
-    stress = block_stress(run, geometry.frame)
-    known = np.flatnonzero(~np.isnan(stress[:, 0, 0]))
-    major, minor, angle = principal(stress[known])
-    size, turned = np.concatenate([major, minor]), np.concatenate([angle, angle + np.pi / 2])
-    turned = turned + np.tile((geometry.angle - run.angle(geometry.frame))[known], 2)
-    longest = largest or largest_stress(run, geometry.frame)
-    if longest == 0:
-        return []
-    arm = np.clip(np.abs(size) / longest, 0, 1) * 0.55 * np.tile(np.sqrt(run.blocks["area"][known]), 2)
-    half = np.column_stack([np.cos(turned), np.sin(turned)]) * arm[:, None]
-    middle, handles, wide = np.tile(geometry.position[known], (2, 1)), [], width(ax, run, 0.05, 0.35, 1.4)
-    for label, color, rows in (("compression", PRESSED, size > 0), ("tension", PULLED, size < 0)):
-        rows = rows & (np.abs(size) > 0.01 * longest)
-        if rows.any():
-            arms = np.stack([middle - half, middle + half], axis=1)[rows]
-            _add(ax, LineCollection(arms, colors="white", linewidths=2.5 * wide, alpha=0.8, zorder=4.9))  # seen on dark blocks too
-            _add(ax, LineCollection(arms, colors=color, linewidths=wide, zorder=5))
-            handles.append(Line2D([], [], color=color, linewidth=1.4,
-                                  label=f"{label}, largest {quantity(float(np.abs(size[rows]).max()), 'Pa')}"))
-    return handles
-
-
 def draw_outline(ax: Axes, run: Run, geometry: Geometry, label: str) -> list[Line2D]:
     """Where the free blocks stand, as a dashed line: around each of a few, around all of many."""
     free = np.flatnonzero(~run.removed(geometry.frame)[run.part_block] & ~run.blocks["held"].astype(bool)[run.part_block])
@@ -261,7 +197,7 @@ def draw_outline(ax: Axes, run: Run, geometry: Geometry, label: str) -> list[Lin
     else:
         polygons = geometry.polygons
         lines = silhouette([polygons[p] for p in free], 0.5 * block_size(run) ** 2)
-    _add(ax, LineCollection(lines, colors=BEFORE, linewidths=1.0, linestyles=(0, (4, 2)), zorder=6))
+    add(ax, LineCollection(lines, colors=BEFORE, linewidths=1.0, linestyles=(0, (4, 2)), zorder=6))
     return [Line2D([], [], color=BEFORE, linewidth=1.0, linestyle=(0, (4, 2)), label=label)]
 
 
@@ -281,11 +217,12 @@ def mark(ax: Axes, points: np.ndarray, label: str) -> list[Line2D]:
                    markeredgewidth=1.4, zorder=6, label=label)
 
 
-def _add(ax: Axes, collection: Collection) -> None:
+def add(ax: Axes, collection: Collection) -> None:
     """The limits of the axes are set already; leaving the collection out of them and of the layout saves half of the time."""
     collection.set_in_layout(False)
     ax.add_collection(collection, autolim=False)
 
 
-def _points(contacts) -> np.ndarray:
+def points_of(contacts) -> np.ndarray:
+    """[n, 2] m, where contacts act."""
     return np.column_stack([contacts["x"], contacts["y"]])

@@ -15,6 +15,7 @@ from matplotlib.text import Text
 
 from talus_lab import layers, measures
 from talus_lab.colors import BlockColors, block_colors, check_color, plain
+from talus_lab.forces import draw_forces, draw_stress
 from talus_lab.layers import Geometry
 from talus_lab.run import Run
 from talus_lab.style import CM, DPI, STYLE, WIDTH_CM
@@ -46,8 +47,8 @@ def picture(run: Run, frame: int = -1, color: str = "displacement", forces: bool
             shown = plain(run) if geometry is start and colors.mappable is not None else colors
             layers.draw_blocks(ax, run, geometry, shown.faces, shown.hatches)
             own = layers.draw_joints(ax, run, geometry, "state") if joints else []
-            own += layers.draw_forces(ax, run, geometry) if forces else []
-            own += layers.draw_stress(ax, run, geometry) if stress else []
+            own += draw_forces(ax, run, geometry) if forces else []
+            own += draw_stress(ax, run, geometry) if stress else []
             own += layers.draw_outline(ax, run, start, f"at t = {quantity(run.times[0], 's', 4)}") if outline and geometry is now else []
             found = f"{measures.verdict(run)}, {measures.mechanism(run)}" if color == "mechanism" and geometry is now else ""
             caption(ax, moment(run, geometry, [colors.note, found.removesuffix(", none")]), width_cm * CM / _across(axes))

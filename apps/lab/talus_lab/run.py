@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Iterable, Iterator, Mapping
 import h5py
 import numpy as np
 
+from talus_lab.arrays import frozen, placed, plain, texts
 from talus_lab.errors import ResultError, nearest
 
 if TYPE_CHECKING:
@@ -59,7 +60,7 @@ class Run:
     def attributes(self) -> Mapping[str, object]:
         """Provenance: title, source, scenario_file, talus_version, status, time_step, ..."""
         with self._file() as file:
-            return MappingProxyType({name: _plain(value) for name, value in file["talus"].attrs.items()})
+            return MappingProxyType({name: plain(value) for name, value in file["talus"].attrs.items()})
 
     @property
     def title(self) -> str:
@@ -73,19 +74,19 @@ class Run:
     @cached_property
     def scenario(self) -> str:
         """Text of the scenario file."""
-        return str(_plain(self._read("talus/scenario")[()]))
+        return str(plain(self._read("talus/scenario")[()]))
 
     @cached_property
     def origin(self) -> np.ndarray:
         """[2] m, what the file's coordinates are relative to; added to all coordinates given here."""
-        return _frozen(np.asarray(self.attributes["origin"], dtype=float))
+        return frozen(np.asarray(self.attributes["origin"], dtype=float))
 
     # Blocks and their shape
     @cached_property
     def blocks(self) -> Mapping[str, np.ndarray]:
         """[blocks] each: name, area [m2], mass [kg], inertia [kg m2], material, region, held, start [blocks, 2] m."""
         columns = self._table("talus/blocks")
-        columns["start"] = _frozen(columns["start"] + self.origin)
+        columns["start"] = frozen(columns["start"] + self.origin)
         return MappingProxyType(columns)
 
     @property
@@ -117,7 +118,7 @@ class Run:
     @cached_property
     def corner_block(self) -> np.ndarray:
         """[corners] block to which each corner belongs."""
-        return _frozen(np.repeat(self.part_block, np.diff(self.first_corner)))
+        return frozen(np.repeat(self.part_block, np.diff(self.first_corner)))
 
     @cached_property
     def arm(self) -> np.ndarray:
@@ -127,13 +128,13 @@ class Run:
     @cached_property
     def internal(self) -> np.ndarray:
         """[corners] true if the edge that starts here lies between two parts of one block."""
-        return _frozen(self._read("talus/corners/internal").astype(bool))
+        return frozen(self._read("talus/corners/internal").astype(bool))
 
     # Motion
     @cached_property
     def times(self) -> np.ndarray:
         """[frames] s"""
-        return _frozen(self._read("talus/frames/time")[: self.frame_count])
+        return frozen(self._read("talus/frames/time")[: self.frame_count])
 
     def frame_at(self, time: float) -> int:
         """The frame nearest to a time in s; the last one of several, for a stage may set the clock back."""
@@ -142,7 +143,7 @@ class Run:
 
     def position(self, frame: int) -> np.ndarray:
         """[blocks, 2] m, centroids."""
-        return _frozen(self._frame("talus/frames/position", frame) + self.origin)
+        return frozen(self._frame("talus/frames/position", frame) + self.origin)
 
     def angle(self, frame: int) -> np.ndarray:
         """[blocks] rad, turned since the scene was built."""
@@ -150,7 +151,7 @@ class Run:
 
     def removed(self, frame: int) -> np.ndarray:
         """[blocks] true for blocks that a stage has deleted."""
-        return _frozen(self._frame("talus/frames/removed", frame).astype(bool))
+        return frozen(self._frame("talus/frames/removed", frame).astype(bool))
 
     def displacement(self, frame: int) -> np.ndarray:
         """[blocks, 2] m, of the centroids since the start or the last reset (single precision)."""
@@ -185,13 +186,13 @@ class Run:
             columns = {name: group[name][rows] for name in group if name not in ("first_row", "row_count")}
         for name, origin in zip("xy", self.origin):
             columns[name] = columns[name] + origin
-        return MappingProxyType({name: _frozen(column) for name, column in columns.items()})
+        return MappingProxyType({name: frozen(column) for name, column in columns.items()})
 
     @cached_property
     def energies(self) -> Mapping[str, np.ndarray]:
         """[frames] J per m each: kinetic, strain_normal, strain_shear, friction, ..., total."""
         table = self._table("talus/energies")
-        return MappingProxyType({name: _frozen(column[: self.frame_count]) for name, column in table.items()})
+        return MappingProxyType({name: frozen(column[: self.frame_count]) for name, column in table.items()})
 
     @cached_property
     def history_names(self) -> tuple[str, ...]:
@@ -209,8 +210,8 @@ class Run:
             raise ResultError(f"{self.path}: no history {name}{nearest(name, self.history_names)}")
         with self._file() as file:
             group = file[f"talus/histories/{name}"]
-            columns = ["time", *_texts(group.attrs["columns"]).tolist()]
-            return MappingProxyType({column: _frozen(group[column][()]) for column in columns})
+            columns = ["time", *texts(group.attrs["columns"]).tolist()]
+            return MappingProxyType({column: frozen(group[column][()]) for column in columns})
 
     @cached_property
     def verdict(self) -> Mapping[str, object]:
@@ -220,15 +221,15 @@ class Run:
             if "talus/verdict" not in file:
                 return MappingProxyType({})
             group = file["talus/verdict"]
-            return MappingProxyType({name: _plain(value) for name, value in group.attrs.items()}
-                                    | {name: _frozen(column[()]) for name, column in group.items()})
+            return MappingProxyType({name: plain(value) for name, value in group.attrs.items()}
+                                    | {name: frozen(column[()]) for name, column in group.items()})
 
     def unit(self, path: str) -> str:
         """Unit of a dataset below /talus, such as blocks/mass; "1" for plain numbers, "-" for text."""
         with self._file() as file:
             if path not in file["talus"]:
                 raise ResultError(f"{self.path}: no dataset {path}")
-            return str(_plain(file["talus"][path].attrs.get("unit", "1")))
+            return str(plain(file["talus"][path].attrs.get("unit", "1")))
 
     # In the shapes of other packages, which need not be there
     def to_pandas(self, table: str, frame: int = -1, name: str = "") -> pandas.DataFrame:
@@ -266,50 +267,24 @@ class Run:
 
     def _read(self, path: str) -> np.ndarray:
         with self._file() as file:
-            return _frozen(_texts(file[path][()]))
+            return frozen(texts(file[path][()]))
 
     def _table(self, group: str) -> dict[str, np.ndarray]:
         with self._file() as file:
-            return {name: _frozen(_texts(column[()])) for name, column in file[group].items()}
+            return {name: frozen(texts(column[()])) for name, column in file[group].items()}
 
     def _frame(self, path: str, frame: int) -> np.ndarray:
         with self._file() as file:
-            return _frozen(file[path][self._index(frame)])
+            return frozen(file[path][self._index(frame)])
 
     def _block_field(self, name: str, frame: int) -> np.ndarray:
         first, count = self._index(frame) * len(self.part_block), len(self.part_block)
         with self._file() as file:
             by_part = file[f"VTKHDF/CellData/{name}"][first : first + count]
         by_block = by_part[self.blocks["first_part"][:-1]]
-        return _frozen(by_block[:, :2] if by_block.ndim == 2 else by_block)
+        return frozen(by_block[:, :2] if by_block.ndim == 2 else by_block)
 
     def _index(self, frame: int) -> int:
         if not -self.frame_count <= frame < self.frame_count:
             raise ResultError(f"{self.path}: no frame {frame}, there are {self.frame_count}")
         return frame % self.frame_count
-
-
-def placed(arm: np.ndarray, position: np.ndarray, angle: np.ndarray, block: np.ndarray) -> np.ndarray:
-    """[n, 2] m: points given from the centroids of their blocks [n, 2], turned with them and moved to where they are."""
-    cos, sin = np.cos(angle)[block], np.sin(angle)[block]
-    turned = np.column_stack([cos * arm[:, 0] - sin * arm[:, 1], sin * arm[:, 0] + cos * arm[:, 1]])
-    return turned + position[block]
-
-
-def _frozen(array: np.ndarray) -> np.ndarray:
-    array = np.asarray(array)
-    array.flags.writeable = False
-    return array
-
-
-def _texts(values: np.ndarray) -> np.ndarray:
-    return np.char.decode(values, "utf-8") if values.dtype.kind == "S" else values
-
-
-def _plain(value: object) -> object:
-    """Attributes as Python values: texts, numbers, or arrays."""
-    if isinstance(value, bytes):
-        return value.decode()
-    if isinstance(value, np.ndarray) and value.shape == ():
-        return _plain(value[()])
-    return value.item() if isinstance(value, np.generic) else value

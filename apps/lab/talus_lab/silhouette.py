@@ -19,7 +19,7 @@ def silhouette(polygons: list[np.ndarray], least: float) -> list[np.ndarray]:
     draw = ImageDraw.Draw(image)
     for polygon in polygons:
         draw.polygon([tuple(point) for point in (polygon - low) * scale + 4], fill=255, outline=255)
-    lines = contourpy.contour_generator(z=np.asarray(image)).lines(127.5)
+    lines = contourpy.contour_generator(z=np.asarray(image), line_type="Separate").lines(127.5)
     return [(line - 4) / scale + low for line in lines if _area(line) > least * scale**2]
 
 

@@ -14,7 +14,6 @@ from talus_lab.diagrams.table import Table
 from talus_lab.errors import ResultError, nearest
 from talus_lab.plot import finish
 from talus_lab.style import CM, DPI, MODES, STYLE, WIDTH_CM
-from talus_lab.units import SPELT
 
 WAYS = ("rank", "range")
 FEW = 4  # cases: of fewer a rank correlation says nothing
