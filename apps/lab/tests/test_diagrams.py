@@ -83,6 +83,22 @@ def test_a_probability_is_the_share_of_decided_cases(tmp_path):
     assert (low[0], high[0]) == pytest.approx((0.2366, 0.7634), abs=1e-4)
 
 
+def test_of_repetitions_the_most_frequent_mode_is_shown_and_the_worse_of_equals(tmp_path):
+    mechanism = ["none", "slide", "slide", "none", "topple", "none"]
+    folder = write_sweep(tmp_path / "s", {"a": [1, 1, 1, 2, 2, 2], "b": [1] * 6, "repetition": [1, 2, 3] * 2}, {"mechanism": mechanism},
+                         kinds={"repetition": "repetition"})
+    assert legend(draw_modes(read_table(folder), "a", "b")) == ["stable (1)", "slide (1)"]
+    folder = write_sweep(tmp_path / "s", {"a": [1, 1], "b": [1, 1]}, {"mechanism": ["none", "slide"]})
+    assert legend(draw_modes(read_table(folder), "a", "b")) == ["slide (1)"]
+
+
+def test_shares_stand_in_their_cells(tmp_path):
+    folder = write_sweep(tmp_path / "s", {"a": [1, 1, 2, 2], "b": [1] * 4, "repetition": [1, 2, 1, 2]},
+                         {"verdict": ["stable", "unstable", "unstable", "unstable"]}, kinds={"repetition": "repetition"})
+    figure = maps.probability(read_table(folder), "a", "b")
+    assert [text.get_text() for text in figure.axes[0].texts] == [".50", "1"]
+
+
 def test_cases_on_one_another_are_averaged_and_empty_cells_are_hatched(tmp_path):
     mean = maps.means(np.array([[1.0, 5], [1, 5], [2, 6]]), np.array([3.0, 5, 7]), np.array([1.0, 2]), np.array([5.0, 6]))
     assert mean[0, 0] == 4 and mean[1, 1] == 7 and np.isnan(mean[0, 1])

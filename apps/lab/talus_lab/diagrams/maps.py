@@ -14,6 +14,7 @@ from matplotlib.colors import LogNorm, Normalize
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
+from matplotlib.patheffects import withStroke
 from matplotlib.tri import Triangulation
 
 from talus_lab.diagrams.boundaries import Curve
@@ -26,6 +27,7 @@ from talus_lab.units import quantity
 
 COLORS = "cividis"
 WIDE = 1000.0  # largest over smallest value from which colours go by the logarithm
+WRITTEN = 12  # cells along an axis: in so many there is room for a number
 NORMAL = 1.96  # of a confidence of 95 %
 MISSING = dict(facecolor="white", edgecolor="#b0b0b0", hatch="////")
 
@@ -48,7 +50,7 @@ def probability(table: Table, x: str, y: str | None = None, panel: str | None = 
     event = failing(table, value, limit)
     words = f"share with {table.labels.get(value, value)} above {quantity(limit, table.units.get(value, '1'))}" if value else "share that fails"
     if y:
-        return _map(table, x, y, panel, event, words, Normalize(0, 1), 0.5, "a half fails", curves, width_cm)
+        return _map(table, x, y, panel, event, words, Normalize(0, 1), 0.5, "a half fails", curves, width_cm, shares=True)
     return _curve(table, x, panel, event, words, width_cm)
 
 
@@ -82,7 +84,7 @@ def _norm(numbers: np.ndarray, table: Table, value: str) -> Normalize:
 
 
 def _map(table: Table, x: str, y: str, panel: str | None, numbers: np.ndarray, label: str, norm: Normalize, limit: float | None, said: str,
-         curves: Sequence[Curve], width_cm: float) -> Figure:
+         curves: Sequence[Curve], width_cm: float, shares: bool = False) -> Figure:
     lattice = grid(table, x, y)
     table = Table(table.path, table.title, {**table.columns, "": numbers}, table.parameters, table.measures, table.units, table.labels)
     theory, empty = [], False
@@ -90,9 +92,10 @@ def _map(table: Table, x: str, y: str, panel: str | None, numbers: np.ndarray, l
         axes = []
         for figure, ax, rows, fixed in panels(table, panel, width_cm, True):
             axes.append(ax)
+            written = shares and lattice is not None and not panel and max(map(len, lattice)) <= WRITTEN
             at = np.column_stack([rows.numbers(x), rows.numbers(y)])
             if lattice:
-                empty |= _cells(ax, at, rows.columns[""], lattice, norm, limit)
+                empty |= _cells(ax, at, rows.columns[""], lattice, norm, limit, written)
                 limits = tuple((edge[0], edge[-1]) for edge in map(borders, lattice))
             else:
                 _scattered(ax, at, rows.columns[""], norm, limit)
@@ -106,8 +109,8 @@ def _map(table: Table, x: str, y: str, panel: str | None, numbers: np.ndarray, l
         return figure
 
 
-def _cells(ax: Axes, at: np.ndarray, numbers: np.ndarray, lattice: tuple, norm: Normalize, limit: float | None) -> bool:
-    """Whether some cell has no value."""
+def _cells(ax: Axes, at: np.ndarray, numbers: np.ndarray, lattice: tuple, norm: Normalize, limit: float | None, written: bool) -> bool:
+    """Whether some cell has no value. written: the numbers stand in their cells."""
     x, y = lattice
     mean = means(at, numbers, x, y)
     ax.pcolormesh(borders(x), borders(y), mean, norm=norm, cmap=COLORS, edgecolors="face", linewidth=0.2, zorder=1)
@@ -118,6 +121,11 @@ def _cells(ax: Axes, at: np.ndarray, numbers: np.ndarray, lattice: tuple, norm: 
         level, over = (np.log(limit), np.log(mean)) if isinstance(norm, LogNorm) and limit > 0 and np.nanmin(mean) > 0 else (limit, mean)
         ax.contour(x, y, np.ma.masked_invalid(over), [level], colors="white", linewidths=3.0, linestyles="solid", zorder=4)
         ax.contour(x, y, np.ma.masked_invalid(over), [level], colors="#d55e00", linewidths=1.6, linestyles="solid", zorder=4)
+    for row, column in np.argwhere(~np.isnan(mean)) if written else []:
+        share = mean[row, column]
+        seam = withStroke(linewidth=2.5, foreground=matplotlib.colormaps[COLORS](norm(share)))  # lines pass behind the number
+        ax.text(x[column], y[row], f"{share:.2f}".removeprefix("0") if 0 < share < 1 else f"{share:.0f}", ha="center", va="center",
+                fontsize=7, color="white" if share < 0.55 else "black", zorder=6, path_effects=[seam])
     return bool(len(i))
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from typing import Sequence
 
 import matplotlib
@@ -23,10 +24,12 @@ MARKED = 30  # cells along an axis of a panel: of more the marks would touch, an
 
 def modes(table: Table, x: str, y: str, panel: str | None = None, curves: Sequence[Curve] = (), width_cm: float = WIDTH_CM) -> Figure:
     """stable, slide, topple, slide and topple, fall, rotation, undecided, failed: by colour and by mark or hatch. panel: a parameter, one
-    panel for each of its values. curves: boundaries of theory. Raises ResultError for unknown columns."""
+    panel for each of its values. curves: boundaries of theory. Where cases lie on one another, such as repetitions, the most frequent
+    mode is shown. Raises ResultError for unknown columns."""
     check(table, x=x, y=y, panel=panel)
     table = table.only(table.mode != "")
     check(table)
+    table, most = most_frequent(table, [name for name in (x, y, panel) if name])
     there = [mode for mode in MODES if mode in set(table.mode)]
     lattice = grid(table, x, y)
     marked = lattice is None or max(map(len, lattice)) <= MARKED
@@ -40,8 +43,24 @@ def modes(table: Table, x: str, y: str, panel: str | None = None, curves: Sequen
             theory = draw_curves(ax, curves, x, y, fixed, limits)
         axis_labels(figure, table, x, y)
         handles = [_handle(mode, int(np.sum(table.mode == mode)), lattice is not None, marked) for mode in there]
-        finish(figure, table.title, handles + theory)
+        finish(figure, table.title + (f" (most frequent of up to {most})" if most > 1 else ""), handles + theory)
         return figure
+
+
+def most_frequent(table: Table, names: list[str]) -> tuple[Table, int]:
+    """One row of those that agree in these columns, with their most frequent mode, the worse of two that are as frequent; and how many
+    agree at most."""
+    worse = list(MODES)
+    rows: dict[tuple, list[int]] = {}
+    for k, key in enumerate(zip(*(table.columns[name].tolist() for name in names))):
+        rows.setdefault(key, []).append(k)
+
+    def chosen(cases: list[int]) -> int:
+        count = Counter(table.mode[cases])
+        mode = max(count, key=lambda mode: (count[mode], worse.index(mode)))
+        return next(k for k in cases if table.mode[k] == mode)
+
+    return table.only(np.array(sorted(map(chosen, rows.values())), int)), max(map(len, rows.values()))
 
 
 def _limits(table: Table, x: str, y: str, lattice: tuple | None) -> tuple:
