@@ -64,6 +64,7 @@ def stand_in(folder: Path, monkeypatch: pytest.MonkeyPatch, always: str = "") ->
     program.write_text(STAND_IN.format(here=here, talus=Path(talus).resolve()))
     program.chmod(0o755)
     monkeypatch.setenv("TALUS", str(program))
+    monkeypatch.setattr("talus_lab.sweep.cores", lambda: 1)  # a worker takes longer to start than a case does
     return here
 
 

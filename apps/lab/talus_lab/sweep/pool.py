@@ -65,8 +65,9 @@ class LocalPool(Executor):
         self._end(k)
 
     def _ask(self, k: int, call: bytes) -> tuple[bool, Any]:
-        process = self._processes[k] or _start()
-        self._processes[k] = process
+        process = self._processes[k]
+        if not process or process.poll() is not None:  # one that was killed while it had nothing to do costs nothing
+            process = self._processes[k] = _start()
         if self._stopped:  # between the call and the process
             process.terminate()
         assert process.stdin and process.stdout
