@@ -157,9 +157,7 @@ def _middles(run: Run, frame: int, contacts) -> np.ndarray:
     point = points_of(contacts)
     along = np.column_stack([-contacts["ny"], contacts["nx"]]).astype(float)
     start = run.corners(frame)
-    after = np.arange(len(start)) + 1
-    after[run.first_corner[1:] - 1] = run.first_corner[:-1]
-    edge = start[after] - start
+    edge = start[run.next_corner] - start
     outward = np.column_stack([edge[:, 1], -edge[:, 0]]) / np.hypot(*edge.T)[:, None]
     low, high = np.full(len(point), -np.inf), np.full(len(point), np.inf)
     for part in (contacts["part_a"], contacts["part_b"]):
@@ -204,9 +202,7 @@ def draw_outline(ax: Axes, run: Run, geometry: Geometry, label: str) -> list[Lin
 def _edges(run: Run, geometry: Geometry) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Ends [corners, 2] m of the edge that starts at each corner, and whether [corners] it is seen."""
     start = geometry.corners
-    after = np.arange(len(start)) + 1
-    after[run.first_corner[1:] - 1] = run.first_corner[:-1]
-    return start, start[after], ~run.internal & ~run.removed(geometry.frame)[run.corner_block]
+    return start, start[run.next_corner], ~run.internal & ~run.removed(geometry.frame)[run.corner_block]
 
 
 def mark(ax: Axes, points: np.ndarray, label: str) -> list[Line2D]:

@@ -116,12 +116,10 @@ def _moved(run: Run, limit: float, frame: int) -> np.ndarray:
 
 def block_at(run: Run, point: Sequence[float]) -> int:
     """The block in which a point (x, y in m) lay in the first frame, or the one whose centroid was nearest to it."""
-    start, first = run.corners(0) - np.asarray(point, float), run.first_corner
-    after = np.arange(len(start)) + 1
-    after[first[1:] - 1] = first[:-1]
-    x, y = start[after] - start, start
-    left = x[:, 0] * -y[:, 1] + x[:, 1] * y[:, 0] >= 0  # the point is to the left of every edge of a convex part that contains it
-    inside = np.flatnonzero(np.logical_and.reduceat(left, first[:-1]))
+    start = run.corners(0) - np.asarray(point, float)
+    edge = start[run.next_corner] - start
+    left = edge[:, 1] * start[:, 0] - edge[:, 0] * start[:, 1] >= 0  # the point is to the left of every edge of a convex part around it
+    inside = np.flatnonzero(np.logical_and.reduceat(left, run.first_corner[:-1]))
     if len(inside):
         return int(run.part_block[inside[0]])
     return int(np.argmin(np.hypot(*(run.position(0) - point).T)))

@@ -75,10 +75,7 @@ def scene(run: Run, width_cm: float = WIDTH_CM) -> Figure:
 
 def thin_blocks(run: Run) -> np.ndarray:
     """Indices of blocks whose width, 2 area / perimeter, is below THIN x sqrt(mean area)."""
-    start, first = run.arm, run.first_corner
-    after = np.arange(len(start)) + 1
-    after[first[1:] - 1] = first[:-1]
-    length = np.hypot(*(start[after] - start).T) * ~run.internal
+    length = np.hypot(*(run.arm[run.next_corner] - run.arm).T) * ~run.internal
     perimeter = np.bincount(run.corner_block, length, minlength=run.block_count)
     area = run.blocks["area"]
     return np.flatnonzero(2 * area < THIN * np.sqrt(area.mean()) * perimeter)

@@ -116,6 +116,13 @@ class Run:
         return self._read("talus/parts/first_corner")
 
     @cached_property
+    def next_corner(self) -> np.ndarray:
+        """[corners] where the edge ends that starts at each corner."""
+        after = np.arange(self.first_corner[-1]) + 1
+        after[self.first_corner[1:] - 1] = self.first_corner[:-1]
+        return frozen(after)
+
+    @cached_property
     def corner_block(self) -> np.ndarray:
         """[corners] block to which each corner belongs."""
         return frozen(np.repeat(self.part_block, np.diff(self.first_corner)))
