@@ -21,7 +21,8 @@ ENERGIES = {"kinetic": ("kinetic", "#0072b2", "-"), "strain_normal": ("stored, n
             "strain_shear": ("stored, shear", "#009e73", ":"), "friction": ("friction", "#d55e00", "-."),
             "contact_damping": ("contact damping", "#e69f00", "--"), "local_damping": ("local damping", "#e69f00", ":"),
             "released": ("released", "#cc79a7", (0, (5, 1, 1, 1, 1, 1))), "gravity": ("work of gravity", "#000000", ":"),
-            "loads": ("work of loads", "#000000", "--"), "driven": ("work of driven blocks", "#000000", "-."), "total": ("total", "#000000", "-")}
+            "loads": ("work of loads", "#000000", "--"), "driven": ("work of driven blocks", "#000000", "-."),
+            "total": ("total", "#000000", "-")}
 NOTHING = 1e-6  # of the largest energy: a line on the axis
 
 

@@ -169,7 +169,8 @@ def steps(run: Run) -> float:
 
 
 # Contacts
-def stress_along(run: Run, start: Sequence[float], end: Sequence[float], frame: int = -1, reach: float | None = None) -> Mapping[str, np.ndarray]:
+def stress_along(run: Run, start: Sequence[float], end: Sequence[float], frame: int = -1,
+                 reach: float | None = None) -> Mapping[str, np.ndarray]:
     """Stresses on the joints along a straight line from `start` to `end` (x, y in m): [n] each, in the order of `distance` [m] from the
     start: normal_stress and shear_stress [Pa], opening and slip [m], utilisation [1], length [m], state.
     Contacts within `reach` m of the line (default: a hundredth of its length) whose joint runs along it, within 10 degrees."""

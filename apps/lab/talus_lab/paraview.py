@@ -17,7 +17,8 @@ POLYGON = 7  # VTK's number for this kind of cell
 TYPES = {"f4": "Float32", "f8": "Float64", "i4": "Int32", "i8": "Int64", "u1": "UInt8"}
 
 
-def write_pvd(run: Run, path: Path, frames: Sequence[int] | None = None, progress: Callable[[int, int], None] = lambda done, of: None) -> list[Path]:
+def write_pvd(run: Run, path: Path, frames: Sequence[int] | None = None,
+              progress: Callable[[int, int], None] = lambda done, of: None) -> list[Path]:
     """Writes `path`, and the frames into a folder of the same name beside it. Returns the files, the .pvd first; it comes last, so that it
     names only frames that are whole. Blocks that a stage has deleted are left out of the frames after it."""
     frames = list(range(run.frame_count) if frames is None else frames)

@@ -19,8 +19,9 @@ if TYPE_CHECKING:
     import xarray
 
 TABLES = ("blocks", "contacts", "energies", "history")
-ARRAYS = ("position", "angle", "displacement", "rotation", "velocity", "removed", "unbalanced_force")
-ARRAY_UNITS = {"position": "m", "angle": "rad", "displacement": "m", "rotation": "rad", "velocity": "m/s", "removed": "1", "unbalanced_force": "N"}
+# methods of a Run that give an array for a frame, and their units
+ARRAYS = {"position": "m", "angle": "rad", "displacement": "m", "rotation": "rad", "velocity": "m/s", "removed": "1",
+          "unbalanced_force": "N"}
 
 
 def to_pandas(run: Run, table: str, frame: int = -1, name: str = "") -> pandas.DataFrame:
@@ -35,7 +36,8 @@ def to_pandas(run: Run, table: str, frame: int = -1, name: str = "") -> pandas.D
             columns |= {"state": _named(columns["state"], JOINT_STATES), "joint": _named(columns["joint"], run.joint_names)}
             units |= {"state": "-", "joint": "-"}
     elif table == "energies":
-        columns, units = {"time": run.times, **run.energies}, {"time": "s"} | {column: run.unit(f"energies/{column}") for column in run.energies}
+        columns = {"time": run.times, **run.energies}
+        units = {"time": "s"} | {column: run.unit(f"energies/{column}") for column in run.energies}
     elif table == "history":
         columns = dict(run.history(name))
         units = {column: run.unit(f"histories/{name}/{column}") for column in columns}
@@ -59,7 +61,7 @@ def to_xarray(run: Run, names: Iterable[str] = ("position", "angle"), frames: It
             raise ResultError(f"no array is called {name}{nearest(name, dict.fromkeys((*ARRAYS, *fields.FIELDS)))}")
         each = [getattr(run, name)(k) if name in ARRAYS else fields.values(run, name, k) for k in chosen]
         values = np.stack(each) if each else np.empty((0, run.block_count))
-        unit = ARRAY_UNITS.get(name) or fields.field(name).unit
+        unit = ARRAYS.get(name) or fields.field(name).unit
         data[name] = (("frame", "block", "axis")[: values.ndim], values, {"unit": unit})
     coordinates = {"frame": chosen, "time": ("frame", np.array([run.times[k] for k in chosen]), {"unit": "s"}),
                    "block": np.arange(run.block_count), "axis": ["x", "y"]}
@@ -81,7 +83,8 @@ def to_pyvista(run: Run, frame: int = -1) -> pyvista.PolyData:
 
 def cell_data(run: Run, frame: int) -> dict[str, np.ndarray]:
     """[parts] or [parts, 3] each: the fields of the block to which a convex part belongs, SI but for rotation_deg."""
-    by_block = {"block_id": np.arange(run.block_count), **{name: run.blocks[name] for name in ("material", "region", "held") if name in run.blocks}}
+    by_block = {"block_id": np.arange(run.block_count)}
+    by_block |= {name: run.blocks[name] for name in ("material", "region", "held") if name in run.blocks}
     by_block |= {"displacement": _spatial(run.displacement(frame)), "velocity": _spatial(run.velocity(frame)),
                  "rotation_deg": np.degrees(run.rotation(frame)), "removed": run.removed(frame).astype(np.uint8)}
     if run.contacts(frame):
@@ -94,8 +97,8 @@ def cell_data(run: Run, frame: int) -> dict[str, np.ndarray]:
 def _blocks(run: Run, frame: int) -> tuple[dict[str, np.ndarray], dict[str, str]]:
     """What does not change, where the blocks are, and every field that this result has."""
     x, y = run.position(frame).T
-    columns: dict[str, np.ndarray] = {"name": run.blocks["name"], "x": x, "y": y, "mass": run.blocks["mass"], "held": run.blocks["held"].astype(bool),
-                                      "removed": run.removed(frame)}
+    columns: dict[str, np.ndarray] = {"name": run.blocks["name"], "x": x, "y": y, "mass": run.blocks["mass"],
+                                      "held": run.blocks["held"].astype(bool), "removed": run.removed(frame)}
     units = {"name": "-", "x": "m", "y": "m", "mass": "kg", "held": "1", "removed": "1"}
     for name, field in fields.FIELDS.items():
         try:

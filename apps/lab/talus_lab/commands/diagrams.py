@@ -17,7 +17,8 @@ def add(commands: argparse._SubParsersAction) -> None:
     p = commands.add_parser("sweep-plot", help="draw what came of a sweep: modes of failure, maps, probabilities, what matters most")
     p.add_argument("folder", type=Path, metavar="FOLDER", help="the output of `talus-lab sweep`")
     p.add_argument("-o", "--output", type=Path, metavar="PATH", help="picture, .png, .svg or .pdf, or a folder for several (default: FOLDER)")
-    p.add_argument("--config", type=Path, metavar="CONFIG.yaml", help="draw what it lists under `pictures`, see docs/python.md (default: the config of the sweep, if it lists any and no other option "
+    p.add_argument("--config", type=Path, metavar="CONFIG.yaml",
+                   help="draw what it lists under `pictures`, see docs/python.md (default: the config of the sweep, if it lists any and no other option "
                    "says what to draw)")
     p.add_argument("--kind", metavar="KIND", help="modes, map, probability, tornado or scatter (default: what fits)")
     p.add_argument("--x", default="", metavar="PARAMETER")
@@ -53,7 +54,7 @@ def sweep_plot_command(options: argparse.Namespace) -> int:
 
 
 def _says_what(options: argparse.Namespace) -> bool:
-    return bool(options.kind or options.x or options.y or options.panel or options.value or options.limit is not None or options.curve)
+    return options.limit is not None or any((options.kind, options.x, options.y, options.panel, options.value, options.curve))
 
 
 def _asked(options: argparse.Namespace, table) -> dict[str, Picture]:

@@ -107,7 +107,8 @@ def _axes(table: Table, picture: Picture) -> tuple[str, str | None, str | None]:
     alone = picture.kind == "probability" and not picture.y and (picture.x or not free)  # a curve over x
     y = picture.y or (free.pop(0) if free and not alone else "")
     if picture.kind in ("modes", "map") and not (x and y):
-        raise ResultError(f"{table.path}: a picture of {picture.kind} needs two parameters that vary; there are {', '.join(table.varied()) or 'none'}")
+        there = ", ".join(table.varied()) or "none"
+        raise ResultError(f"{table.path}: a picture of {picture.kind} needs two parameters that vary; there are {there}")
     if picture.kind == "probability" and not x:
         raise ResultError(f"{table.path}: nothing varies")
     words = [name for name in table.varied() if name not in (x, y)]

@@ -59,7 +59,8 @@ class Table:
     @property
     def numeric(self) -> list[str]:
         """Measures that are numbers, and known for at least one case."""
-        return [name for name in self.measures if self.columns[name].dtype.kind in "fiub" and np.isfinite(self.columns[name].astype(float)).any()]
+        numbers = [name for name in self.measures if self.columns[name].dtype.kind in "fiub"]
+        return [name for name in numbers if np.isfinite(self.columns[name].astype(float)).any()]
 
     @cached_property
     def done(self) -> np.ndarray:
