@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import shutil
+import signal
 import subprocess
+import threading
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Callable, Iterator
@@ -36,11 +38,36 @@ def movie(path: Path, rate: float) -> Iterator[Write]:
     """rate: frames per second. What was there before stays until all is written, also if the writing is interrupted."""
     beside = path.with_name(f".{path.stem}.part{path.suffix}")
     try:
-        with (_gif if path.suffix.lower() == ".gif" else _mp4)(beside, rate) as write:
-            yield write
+        with _interrupts() as check_interrupt, (_gif if path.suffix.lower() == ".gif" else _mp4)(beside, rate) as write:
+
+            def write_on(pixels: np.ndarray) -> None:
+                check_interrupt()
+                write(pixels)
+
+            yield write_on
+            check_interrupt()
         beside.replace(path)
     finally:
         beside.unlink(missing_ok=True)
+
+
+@contextmanager
+def _interrupts() -> Iterator[Callable[[], None]]:
+    """Ctrl-C and a polite kill end the work between two frames. Raised at any moment, the interrupt may come while matplotlib cleans up
+    after itself, where Python drops it."""
+    asked: list[int] = []
+
+    def check_interrupt() -> None:
+        if asked:
+            raise KeyboardInterrupt
+
+    handled = (signal.SIGINT, signal.SIGTERM) if threading.current_thread() is threading.main_thread() else ()  # others cannot
+    before = [signal.signal(number, lambda number, frame: asked.append(number)) for number in handled]
+    try:
+        yield check_interrupt
+    finally:
+        for number, handler in zip(handled, before):
+            signal.signal(number, handler)
 
 
 @contextmanager
@@ -69,7 +96,7 @@ def _mp4(path: Path, rate: float) -> Iterator[Write]:
             command = ["ffmpeg", "-loglevel", "error", "-y", "-f", "rawvideo", "-pix_fmt", "rgb24", "-s", f"{width}x{height}",
                        "-r", f"{rate:g}", "-i", "-", "-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2:color=white",  # H.264 wants even sizes
                        "-c:v", "libx264", "-crf", "18", "-pix_fmt", "yuv420p", "-movflags", "+faststart", str(path)]
-            process = subprocess.Popen(command, stdin=subprocess.PIPE, stderr=subprocess.PIPE)
+            process = subprocess.Popen(command, stdin=subprocess.PIPE, stderr=subprocess.PIPE, start_new_session=True)  # Ctrl-C is ours
         try:
             process.stdin.write(pixels.tobytes())
         except BrokenPipeError:

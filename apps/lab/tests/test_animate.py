@@ -1,4 +1,8 @@
 import os
+import signal
+import subprocess
+import sys
+import time
 
 import numpy as np
 import pytest
@@ -45,6 +49,20 @@ def test_what_was_there_stays_when_the_writing_is_interrupted(result):
     with pytest.raises(KeyboardInterrupt):
         animate(talus_lab.open(result), gif, dpi=50, progress=stop)
     assert gif.read_bytes() == b"earlier" and len(list(result.parent.iterdir())) == 2
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_an_animation_that_is_ended_leaves_nothing(result, number):
+    gif = result.with_suffix(".gif")
+    code = "from pathlib import Path; from talus_lab.animate import animate; from talus_lab.run import open_run; " \
+           f"animate(open_run({str(result)!r}), Path({str(gif)!r}), frames=[0, 1, 2] * 1000)"  # takes minutes
+    process = subprocess.Popen([sys.executable, "-c", code], stderr=subprocess.DEVNULL)
+    part, given_up = result.with_name(".slide.part.gif"), time.monotonic() + 30
+    while not part.exists() and time.monotonic() < given_up:
+        time.sleep(0.02)
+    assert part.exists()
+    process.send_signal(number)
+    assert process.wait(20) != 0 and [path.name for path in result.parent.iterdir()] == ["slide.h5"]
 
 
 @pytest.fixture
