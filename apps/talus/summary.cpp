@@ -99,7 +99,8 @@ void print_timing(const Simulation& simulation, double wall_time) {
         std::printf("  search         %s: %s\n", simulation.scenario().run.search.c_str(),
                     simulation.search_choice().c_str());
     if (simulation.scenario().run.freeze)
-        std::printf("  frozen         %.1f %% of the blocks in the mean of all steps\n", 100.0 * simulation.frozen_share());
+        std::printf("  frozen         %.1f %% of the blocks, in the mean of the steps in which they may\n",
+                    100.0 * simulation.frozen_share());
     const MemoryUse memory = memory_use();
     std::printf("  memory         %.0f MB at the end, %.0f MB at most (cutting and frames)\n", memory.now / 1e6,
                 memory.peak / 1e6);

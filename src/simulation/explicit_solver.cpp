@@ -114,11 +114,12 @@ void Simulation::find_awake(bool list_renewed) {
 }
 
 double Simulation::frozen_share() const {
-    return steps_done_ == 0 ? 0.0
-                            : 1.0 - static_cast<double>(moved_) / (static_cast<double>(steps_done_) * model_.blocks.size());
+    const double all = static_cast<double>(freezing_steps_) * model_.blocks.size();
+    return all == 0.0 ? 0.0 : 1.0 - static_cast<double>(moved_) / all;
 }
 
 void Simulation::freeze_and_wake() {
+    ++freezing_steps_;
     for (const BlockRange& range : awake_.moving) moved_ += range.end - range.begin;
     // A stage that ends in equilibrium ends none the later for blocks that are frozen before.
     const double share = std::min(*scenario_.run.freeze, 0.25 * stage().until.equilibrium.value_or(1.0));

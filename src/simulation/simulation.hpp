@@ -80,7 +80,7 @@ public:
     double max_speed() const { return speed_; }                    // m/s, in the last step
     std::int64_t refreshes() const { return refreshes_; }          // how often the list of pairs was renewed
     std::int64_t boxes_renewed() const { return boxes_renewed_; }  // of how many blocks, over all refreshes
-    double frozen_share() const;  // of the blocks, in the mean of the steps done in this process
+    double frozen_share() const;  // of the blocks, in the mean of the steps done in this process in which blocks may freeze
     std::string search_choice() const { return search_->choice(); }  // see PairSearch::choice
     const std::array<double, part_names.size()>& seconds() const { return seconds_; }
 
@@ -173,7 +173,8 @@ private:
     bool equilibrium_ = false;
     double speed_ = 0.0;
     std::int64_t refreshes_ = 0, boxes_renewed_ = 0, steps_done_ = 0;
-    std::int64_t moved_ = 0;  // blocks that were computed, summed over the steps
+    std::int64_t freezing_steps_ = 0;  // in which blocks may freeze
+    std::int64_t moved_ = 0;           // blocks that were computed, summed over these
     std::array<double, part_names.size()> seconds_{};
     Stopwatch watch_;
 };

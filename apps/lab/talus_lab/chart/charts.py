@@ -17,8 +17,8 @@ from talus_lab.study.picture import bare, finish, line
 # colour, mark, line: ours drawn through, other programs dashed
 METHOD_STYLE = {
     "explicit": ("#0072b2", "o", "-"), "explicit-general": ("#56b4e9", "^", "-"), "explicit-loaded": ("#0072b2", "s", "-"),
-    "explicit-local": ("#8c8c8c", "v", "-"), "rigid": ("#000000", "*", "-"), "static": ("#009e73", "D", "-"),
-    "box2d": ("#d55e00", "o", "--"), "chipmunk": ("#e69f00", "s", "--"),
+    "explicit-frozen": ("#0072b2", "D", ":"), "explicit-local": ("#8c8c8c", "v", "-"), "rigid": ("#000000", "*", "-"),
+    "static": ("#009e73", "D", "-"), "box2d": ("#d55e00", "o", "--"), "chipmunk": ("#e69f00", "s", "--"),
 }
 OTHERS = [("#cc79a7", mark, dashes) for dashes in ("-", "--") for mark in "^DPXv"]
 LOWEST = 1e-9  # errors below are drawn here
