@@ -52,7 +52,7 @@ Stages stages_like(const Simulation& simulation, const std::string& solver) {
             return;
         }
         found.time += until.time.value_or(0.0);
-        found.may_end_before |= until.equilibrium && until.time;
+        found.may_end_before |= (until.equilibrium || until.verdict) && until.time;
         found.has_no_end |= !until.time;
     };
     for (const StageSpec& stage : scenario.stages) count(stage.solver, stage.until);

@@ -23,6 +23,8 @@ int info_command(const std::string& results) {
     std::printf("\n");
     for (const std::string& name : reader.history_names())
         std::printf("  %-18s %s, %zu rows\n", "history", name.c_str(), reader.history(name).rows());
+    for (const auto& [name, value] : reader.verdict())
+        std::printf("  %-18s %s\n", (name == "verdict" ? name : "verdict/" + name).c_str(), value.c_str());
     const Table energies = reader.energies();
     if (energies.rows() > 0) {
         std::printf("  energies at the end:");

@@ -66,7 +66,8 @@ Scenario read_noted(const RestartInfo& info) {
 
 // Without what compares it with other cases, and what is said of runs that end early.
 std::vector<ExpectSpec> judged_alone(std::vector<ExpectSpec> expects) {
-    std::erase_if(expects, [](const ExpectSpec& e) { return !e.same_as.empty() || about_what_is_told(e); });
+    std::erase_if(
+        expects, [](const ExpectSpec& e) { return !e.same_as.empty() || (about_what_is_told(e) && !about_the_verdict(e)); });
     return expects;
 }
 
@@ -150,7 +151,7 @@ int carry_out(Simulation& simulation, Recorder& recorder, Watch* watch, std::siz
     }
     int failed = 0;
     if (watch) {
-        const std::vector<Verdict> verdicts = watch->judge();
+        const std::vector<Verdict> verdicts = watch->judge({.fault = {}, .warnings = {}, .verdict = simulation.verdict()});
         const auto end = verdicts.begin() + static_cast<std::ptrdiff_t>(expectations);
         failed = print_verdicts({verdicts.begin(), end}, "  ");
         if (end != verdicts.end())

@@ -133,6 +133,14 @@ void print_static_stages(const Simulation& simulation) {
     }
 }
 
+void print_verdict(const StabilityVerdict& v) {
+    std::printf("  verdict        %s", name_of(v.verdict));
+    if (v.moving_blocks > 0)
+        std::printf(", %s: %d block%s of %s together, %d detached", name_of(v.mechanism), v.moving_blocks,
+                    v.moving_blocks == 1 ? "" : "s", number(v.moving_area, "m2").c_str(), v.detached_blocks);
+    std::printf("\n                 %s\n", v.reason.c_str());
+}
+
 }  // namespace
 
 std::string number(double value, const char* unit) {
@@ -173,6 +181,7 @@ void print_stage(const Simulation& simulation) {
 
 void print_summary(const Simulation& simulation, double wall_time) {
     std::printf("at t = %s:\n", number(simulation.state().time, "s").c_str());
+    print_verdict(simulation.verdict());
     print_movers(simulation);
     print_contacts(simulation);
     print_overlap(simulation);

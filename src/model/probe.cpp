@@ -276,6 +276,10 @@ Reading reading_of(Quantity::Place place, const ProbeSpec& spec, const Model& mo
 
 }  // namespace
 
+BlockId observed_block(const ProbeSpec& spec, const Model& model, const State& state) {
+    return observed_point(spec, model, state).block;
+}
+
 Probe make_probe(const ProbeSpec& spec, const Model& model, const State& state) {
     const Quantity* quantity = find_quantity(spec.quantity);
     if (!quantity || !quantity->history) refuse(spec, "is not a quantity that can be observed");

@@ -40,4 +40,7 @@ struct Probe {
 /// max_overlap, slip_changes, time_step, stable_step: of the whole scene.
 Probe make_probe(const ProbeSpec& spec, const Model& model, const State& state);
 
+/// The block that a point or a name means. Throws InputError if there is none.
+BlockId observed_block(const ProbeSpec& spec, const Model& model, const State& state);
+
 }  // namespace talus

@@ -118,6 +118,42 @@ struct Unsolved {
     double way = 0.0;        // m, sum of these speeds times the steps: how far blocks may have crept
 };
 
+enum class Stability : std::uint8_t { undecided, stable, unstable };
+enum class Mechanism : std::uint8_t { none, slide, topple, slide_and_topple, fall, rotation };
+
+/// How a block set out: when it had first moved by a visible part of its size, see verdict/course.hpp.
+enum class SetOut : std::uint8_t { not_yet, without_slip, with_slip };
+
+/// How blocks went on, in windows of time: what a verdict is made from. Empty before the recorded stages.
+struct Course {
+    double window = 0.0;        // s, length of the window of now; 0 = none
+    double window_begin = 0.0;  // s, since the last reset
+    double next_look = 0.0;     // s
+    std::int64_t looks = 0;     // in this window
+    double give = 0.0;          // m, what springs account for
+    double kinetic = 0.0;       // J, sum over the looks of this window
+    double kinetic_last = 0.0;  // J, means of the last two windows
+    double kinetic_before = 0.0;
+    std::vector<Vec2> sum;             // [nb] m, displacements summed over the looks of this window
+    std::vector<double> turn_sum;      // [nb] rad
+    double velocity_time = 0.0;        // s, at which a block that gains evenly has the velocities below
+    double mean_time = 0.0;            // s, middle of the last window
+    std::vector<Vec2> mean;            // [nb] m, mean displacement in it
+    std::vector<double> turn_mean;     // [nb] rad
+    std::vector<Vec2> velocity;        // [nb] m/s, from the mean of the window before to that of the last one
+    std::vector<Vec2> gained;          // [nb] m/s2, its change since the window before that
+    std::vector<double> speed;         // [nb] m/s, of the farthest point, between the same means
+    std::vector<double> speed_before;  // [nb] m/s, one window earlier
+    std::vector<std::uint8_t> going;   // [nb] windows in a row in which it went on no slower than before
+    std::vector<double> reach;         // [nb] m, farthest mean from the start
+    // Windows in a row, with all loads on, in which the block was at rest, and in which it came no further.
+    std::vector<std::uint8_t> rested, no_further;  // [nb]
+    std::vector<SetOut> set_out;                   // [nb]
+    std::vector<Mechanism> mechanism;              // [nb] of blocks that are known to be on their way; none: not known
+    Stability verdict = Stability::undecided;
+    double certain_at = 0.0;  // s, since the last reset
+};
+
 struct State {
     double time = 0.0;        // s, since the last reset
     double stage_time = 0.0;  // s, since the stage began
@@ -140,6 +176,7 @@ struct State {
     double earlier_gain = 0.0;  // energy_gain before the last reset
     Statics statics;
     Unsolved unsolved;
+    Course course;
 
     static constexpr std::uint8_t calm_needed = 2;
     /// At rest, see dynamics/freeze.hpp.

@@ -21,10 +21,16 @@ std::string exact(double value) {
     return {text, std::to_chars(text, text + sizeof text, value).ptr};
 }
 
-std::string attribute_text(const h5::File& file, const std::string& name) {
-    if (file.is_text_attribute("/talus", name)) return file.text("/talus", name);
+std::string attribute_text(const h5::File& file, const std::string& group, const std::string& name) {
+    if (file.is_text_attribute(group, name)) return file.text(group, name);
     std::string all;
-    for (const double value : file.numbers("/talus", name)) all.append(all.empty() ? "" : " ").append(exact(value));
+    for (const double value : file.numbers(group, name)) all.append(all.empty() ? "" : " ").append(exact(value));
+    return all;
+}
+
+std::vector<std::pair<std::string, std::string>> attributes_of(const h5::File& file, const std::string& group) {
+    std::vector<std::pair<std::string, std::string>> all;
+    for (const std::string& name : file.attributes(group)) all.emplace_back(name, attribute_text(file, group, name));
     return all;
 }
 
@@ -62,10 +68,11 @@ std::vector<std::pair<std::string, std::uint64_t>> ResultsReader::files() const 
 std::string ResultsReader::status() const { return file_.text("/talus", "status"); }
 std::int64_t ResultsReader::blocks() const { return file_.rows("/talus/blocks/mass"); }
 
-std::vector<std::pair<std::string, std::string>> ResultsReader::attributes() const {
-    std::vector<std::pair<std::string, std::string>> all;
-    for (const std::string& name : file_.attributes("/talus")) all.emplace_back(name, attribute_text(file_, name));
-    return all;
+std::vector<std::pair<std::string, std::string>> ResultsReader::attributes() const { return attributes_of(file_, "/talus"); }
+
+std::vector<std::pair<std::string, std::string>> ResultsReader::verdict() const {
+    if (!file_.exists(verdict_group)) return {};
+    return attributes_of(file_, verdict_group);
 }
 
 std::vector<double> ResultsReader::frame_times() const {

@@ -26,6 +26,8 @@ public:
     std::vector<std::string> overrides() const;
     std::vector<std::pair<std::string, std::uint64_t>> files() const;     // as in RunInfo
     std::vector<std::pair<std::string, std::string>> attributes() const;  // name and value of /talus, as text, sorted
+    /// Name and value of /talus/verdict, as text, sorted; empty if the run ended before anything could be said.
+    std::vector<std::pair<std::string, std::string>> verdict() const;
     std::string status() const;  // in progress (or killed) | complete | interrupted | diverged | stopped | refused
 
     std::int64_t frames() const { return frames_; }

@@ -18,7 +18,11 @@ namespace {
 [[maybe_unused]] void every_member_is_transferred(const State& state, const Contact& contact) {
     [[maybe_unused]] const auto& [time, stage_time, calm, step, total_steps, stage, stage_step, halvings, motion, load,
                                   damping, contacts, calm_looks, removed, release, start_position, start_angle, ledger,
-                                  earlier_gain, statics, unsolved] = state;
+                                  earlier_gain, statics, unsolved, course] = state;
+    [[maybe_unused]] const auto& [window_length, window_begin, next_look, looks, give, kinetic, kinetic_last, kinetic_before,
+                                  sum, turn_sum, velocity_time, mean_time, mean, turn_mean, mean_velocity, gained_speed,
+                                  speed, speed_before, going, reach, rested, no_further, set_out, mechanism, verdict,
+                                  certain_at] = course;
     [[maybe_unused]] const auto& [unsolved_steps, unsolved_speed, unsolved_way] = unsolved;
     [[maybe_unused]] const auto& [held_back, load_share, load_rate, window_position, window_angle, window_load, window,
                                   relaxation_damping, shift, polish_at, patience, start, look_at, look_share, look_ratio,
@@ -42,6 +46,15 @@ struct Rows<T> {
     static constexpr int width = 1;
     static void put(const T& item, std::vector<T>& flat) { flat.push_back(item); }
     static void get(T& item, const T* row) { item = *row; }
+};
+
+template <class T>
+requires std::is_enum_v<T>
+struct Rows<T> {
+    using Number = std::underlying_type_t<T>;
+    static constexpr int width = 1;
+    static void put(T item, std::vector<Number>& flat) { flat.push_back(static_cast<Number>(item)); }
+    static void get(T& item, const Number* row) { item = static_cast<T>(*row); }
 };
 
 template <>
@@ -204,6 +217,36 @@ void transfer_statics(Archive& to, AnyStatics& s) {
     }
 }
 
+template <class Archive, class AnyCourse>
+void transfer_course(Archive& to, AnyCourse& c) {
+    to.one("course/window", "s", c.window);
+    to.one("course/window_begin", "s", c.window_begin);
+    to.one("course/next_look", "s", c.next_look);
+    to.one("course/looks", "1", c.looks);
+    to.one("course/give", "m", c.give);
+    to.one("course/kinetic", "J", c.kinetic);
+    to.one("course/kinetic_last", "J", c.kinetic_last);
+    to.one("course/kinetic_before", "J", c.kinetic_before);
+    to.list("course/sum", "m", c.sum);
+    to.list("course/turn_sum", "rad", c.turn_sum);
+    to.one("course/velocity_time", "s", c.velocity_time);
+    to.one("course/mean_time", "s", c.mean_time);
+    to.list("course/mean", "m", c.mean);
+    to.list("course/turn_mean", "rad", c.turn_mean);
+    to.list("course/velocity", "m/s", c.velocity);
+    to.list("course/gained", "m/s2", c.gained);
+    to.list("course/speed", "m/s", c.speed);
+    to.list("course/speed_before", "m/s", c.speed_before);
+    to.list("course/going", "1", c.going);
+    to.list("course/reach", "m", c.reach);
+    to.list("course/rested", "1", c.rested);
+    to.list("course/no_further", "1", c.no_further);
+    to.list("course/set_out", "1", c.set_out);
+    to.list("course/mechanism", "1", c.mechanism);
+    to.one("course/verdict", "1", c.verdict);
+    to.one("course/certain_at", "s", c.certain_at);
+}
+
 template <class Archive, class AnyState>
 void transfer(Archive& to, AnyState& state) {
     to.one("time", "s", state.time);
@@ -245,6 +288,7 @@ void transfer(Archive& to, AnyState& state) {
     to.one("unsolved/speed", "m/s", state.unsolved.speed);
     to.one("unsolved/way", "m", state.unsolved.way);
     transfer_statics(to, state.statics);
+    transfer_course(to, state.course);
 }
 
 State with_contacts_alive(const State& state) {
@@ -286,6 +330,12 @@ h5::File open_restart(const std::string& path) {
 
 bool within(int value, int first, std::size_t end) { return value >= first && value < static_cast<int>(end); }
 
+bool fits(const Course& c, std::size_t blocks) {
+    const auto all = [&](const auto&... lists) { return ((lists.size() == blocks) && ...); };
+    return c.window == 0.0 || all(c.sum, c.turn_sum, c.mean, c.turn_mean, c.velocity, c.gained, c.speed, c.speed_before,
+                                  c.going, c.reach, c.rested, c.no_further, c.set_out, c.mechanism);
+}
+
 bool fits(const State& s, const Model& model) {
     const std::size_t blocks = model.blocks.mass.size(), contacts = s.contacts.list.size();
     const auto one_per_block = [&](const auto&... lists) { return ((lists.size() == blocks) && ...); };
@@ -297,7 +347,7 @@ bool fits(const State& s, const Model& model) {
     return one_per_block(s.motion.position, s.motion.angle, s.motion.velocity, s.motion.spin, s.load, s.removed,
                          s.start_position, s.start_angle) &&
            (s.release.empty() || s.release.size() == blocks) && (s.damping.empty() || s.damping.size() == blocks) &&
-           (s.calm.empty() || s.calm.size() == blocks) && s.contacts.reaction.size() == contacts &&
+           (s.calm.empty() || s.calm.size() == blocks) && fits(s.course, blocks) && s.contacts.reaction.size() == contacts &&
            s.contacts.broken.size() == static_cast<std::size_t>(model.cells()) &&
            std::all_of(s.contacts.list.begin(), s.contacts.list.end(), known);
 }

@@ -169,6 +169,7 @@ void ResultsWriter::finish(const RunSummary& summary) {
     file_.set("/talus", "end_time", summary.end_time);
     file_.set("/talus", "energy_gain", summary.energy_gain);
     write_evidence(summary.statics);
+    if (summary.verdict) write_verdict(*summary.verdict);
     file_.flush();
 }
 
@@ -187,6 +188,28 @@ void ResultsWriter::write_evidence(const Statics& statics) {
         put(name, column, "static stages");
     });
     put("newton_ratios", statics.newton_ratios, "steps of Newton's method in all static stages");
+}
+
+void ResultsWriter::write_verdict(const StabilityVerdict& v) {
+    file_.make_group(verdict_group);
+    file_.set(verdict_group, "verdict", std::string(name_of(v.verdict)));
+    file_.set(verdict_group, "mechanism", std::string(name_of(v.mechanism)));
+    file_.set(verdict_group, "reason", v.reason);
+    file_.set(verdict_group, "time", v.time);
+    file_.set(verdict_group, "unbalanced_ratio", v.unbalanced_ratio);
+    file_.set(verdict_group, "kinetic_energy", v.kinetic_energy);
+    file_.set(verdict_group, "kinetic_energy_trend", v.kinetic_energy_trend);
+    file_.set(verdict_group, "displacement_trend", v.displacement_trend);
+    file_.set(verdict_group, "max_displacement", v.max_displacement);
+    file_.set(verdict_group, "moving_blocks", std::int64_t{v.moving_blocks});
+    file_.set(verdict_group, "detached_blocks", std::int64_t{v.detached_blocks});
+    file_.set(verdict_group, "moving_area", v.moving_area);
+    const std::string path = verdict_group + "/block_mechanism";
+    if (!file_.exists(path)) file_.make_rows<std::uint8_t>(path, {}, {"1", "blocks"});
+    file_.truncate(path, 0);  // of an earlier end, before the run was resumed
+    std::vector<std::uint8_t> codes;
+    for (const Mechanism m : v.block_mechanism) codes.push_back(static_cast<std::uint8_t>(m));
+    file_.append<std::uint8_t>(path, codes);
 }
 
 }  // namespace talus

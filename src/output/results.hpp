@@ -7,9 +7,11 @@
 #include "model/measure.hpp"
 #include "model/model.hpp"
 #include "model/state.hpp"
+#include "model/verdict.hpp"
 #include "output/h5_file.hpp"
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -39,9 +41,10 @@ struct RunSummary {
     double wall_time = 0.0;  // s
     double cpu_time = 0.0;   // s, of all threads, from the first step on and without recording
     std::int64_t steps = 0;
-    double end_time = 0.0;     // s
-    double energy_gain = 0.0;  // 1
-    Statics statics;           // evidence of the static stages
+    double end_time = 0.0;                    // s
+    double energy_gain = 0.0;                 // 1
+    Statics statics;                          // evidence of the static stages
+    std::optional<StabilityVerdict> verdict{};  // none: the run ended before anything could be said
 };
 
 struct HistoryColumn {
@@ -86,6 +89,7 @@ private:
     void append_histories();
     void append_contacts(const Model& model, const State& state);
     void write_evidence(const Statics& statics);
+    void write_verdict(const StabilityVerdict& verdict);
 
     h5::File file_;
     std::int64_t frames_ = 0, contact_rows_ = 0;

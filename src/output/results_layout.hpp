@@ -13,7 +13,7 @@ struct RunInfo;
 
 inline const std::string frames_group = "/talus/frames/", energies_group = "/talus/energies/",
                          contacts_group = "/talus/contacts/", histories_group = "/talus/histories/",
-                         statics_group = "/talus/statics/";
+                         statics_group = "/talus/statics/", verdict_group = "/talus/verdict";
 
 /// As long as the longest status that may follow, so that it is overwritten in its place.
 inline const std::string status_while_running = "in progress";

@@ -91,11 +91,18 @@ HistorySpec convert_history(const Cursor& at) {
     return history;
 }
 
+bool of_the_verdict(const Quantity& quantity) { return quantity.name == "verdict" || quantity.name == "mechanism"; }
+
+/// Said of a run beside its numbers.
+bool told(const Quantity& quantity) {
+    return of_the_verdict(quantity) || quantity.name == "fault" || quantity.name == "warning";
+}
+
 std::string measure_of(const Quantity& quantity, const Cursor& at) {
     if (quantity.name == "acceleration") return "rate";
     if (quantity.name == "frequency" || quantity.name == "decrement" || quantity.name == "loop_area") return quantity.name;
     if (quantity.name == "stable" || quantity.name == "unstable") return "max";
-    if (quantity.name == "fault" || quantity.name == "warning") return quantity.name;
+    if (told(quantity)) return quantity.name;
     if (at["at"].text() == "max" || at["at"].text() == "min") return at["at"].text();
     return "value";
 }
@@ -126,14 +133,17 @@ void check_times(const ExpectSpec& expect, const Quantity& quantity, const Curso
 }
 
 void check_bounds(const ExpectSpec& expect, const Quantity& quantity, const Cursor& at) {
-    const bool told = quantity.name == "fault" || quantity.name == "warning";
+    const bool no_number = told(quantity), in_words = no_number && !of_the_verdict(quantity);
     const bool stands = quantity.name == "stable" || quantity.name == "unstable";
     const bool likened = at["same_as"].given();
     const bool bounded = at["value"].given() || likened || at["above"].given() || at["below"].given();
-    if ((told || stands) && bounded) at.fault(quantity.name + " takes no value, same_as, above or below");
-    if (!told && !stands && !bounded) at.fault("needs exactly one of value, same_as, above, below");
+    if ((no_number || stands) && bounded) at.fault(quantity.name + " takes no value, same_as, above or below");
+    if (!no_number && !stands && !bounded) at.fault("needs exactly one of value, same_as, above, below");
     if (!stands && at["limit"].given()) at["limit"].fault("goes with stable and unstable");
-    if (told != at["says"].given()) at["says"].fault(told ? "is missing: words of the text" : "goes with fault and warning");
+    if (in_words != at["says"].given())
+        at["says"].fault(in_words ? "is missing: words of the text" : "goes with fault and warning");
+    if (of_the_verdict(quantity) != at["is"].given())
+        at["is"].fault(of_the_verdict(quantity) ? "is missing: what is expected" : "goes with verdict and mechanism");
     const bool tolerance = expect.tolerance || expect.tolerance_absolute;
     if (tolerance && !expect.value && !likened) at.fault("a tolerance goes with value and same_as");
     if (likened && !tolerance) at["same_as"].fault("needs tolerance or tolerance_absolute");
@@ -143,10 +153,28 @@ void check_bounds(const ExpectSpec& expect, const Quantity& quantity, const Curs
         at["tolerance"].fault("is relative to |value|, which is 0; give tolerance_absolute");
 }
 
+const std::vector<std::string>& words_of(const Quantity& quantity) {
+    static const std::vector<std::string> verdicts{"stable", "unstable", "undecided"};
+    static const std::vector<std::string> mechanisms{"none", "slide", "topple", "slide and topple", "fall", "rotation"};
+    return quantity.name == "verdict" ? verdicts : mechanisms;
+}
+
+void set_words(ExpectSpec& expect, const Quantity& quantity, const Cursor& is) {
+    if (!of_the_verdict(quantity) || !is.given()) return;
+    const std::vector<Cursor> items = is.items();
+    for (const Cursor& word : items.empty() ? std::vector<Cursor>{is} : items) {
+        expect.is.push_back(word.text());
+        const std::vector<std::string>& words = words_of(quantity);
+        if (std::find(words.begin(), words.end(), word.text()) == words.end())
+            word.fault("is none of: " + enumerate(words, " | "));
+    }
+}
+
 void set_bounds(ExpectSpec& expect, const Quantity& quantity, const Cursor& at) {
     expect.value = at["value"].maybe_number();
     expect.same_as = at["same_as"].text();
     expect.says = at["says"].text();
+    set_words(expect, quantity, at["is"]);
     expect.above = at["above"].maybe_number();
     expect.below = at["below"].maybe_number();
     expect.tolerance = at["tolerance"].maybe_number();

@@ -10,8 +10,10 @@ namespace {
 // `at`: of the stage, or run.
 Until convert_until(const Cursor& at, const std::string& solver) {
     const Cursor until = at["until"];
-    Until found{until["time"].maybe_number(), until["equilibrium"].maybe_number(), {}};
+    Until found{until["time"].maybe_number(), until["equilibrium"].maybe_number(), {}, until["verdict"].yes()};
     if (const auto iterations = until["iterations"].maybe_number()) found.iterations = static_cast<int>(*iterations);
+    if (found.verdict && solver != "static" && !found.time)
+        until["verdict"].fault("needs `time`, the most that is computed: some scenes stay undecided");
     if (solver == "static" && found.time && !found.equilibrium)
         until.fault("needs `equilibrium`: no time passes in a static stage, it ends in equilibrium");
     if (solver != "static" && found.iterations) until["iterations"].fault("is for a static stage; others end by `time`");
@@ -62,6 +64,7 @@ StageSpec convert_stage(const Cursor& at, const std::string& solver_of_run, Valu
     stage.loads_given = at["loads"].given();
     if (!at["until"].given()) at["until"].fault("is missing: when the stage ends");
     stage.until = convert_until(at, stage.solver);
+    if (stage.until.verdict) at["until"]["verdict"].fault("goes with `run`: what follows a stage changes the scene");
     stage.damping = convert_damping(at["damping"]);
     stage.time_step = at["time_step"].maybe_number();
     stage.time_step_where = at["time_step"].where();

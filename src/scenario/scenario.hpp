@@ -182,6 +182,7 @@ struct Until {
     std::optional<double> time;         // s, length of the stage
     std::optional<double> equilibrium;  // unbalanced ratio at which the stage ends
     std::optional<int> iterations;      // of a static stage at most
+    bool verdict = false;               // ends as soon as it is certain whether the blocks stand; of the run only
 };
 
 /// The error that a run may have. What the scenario leaves open is chosen for it, see simulation/plan.hpp.
@@ -262,6 +263,7 @@ struct ExpectSpec {
     std::optional<std::pair<double, double>> between;  // s
     std::optional<double> value, above, below;
     std::string same_as;              // case whose verdict at the same place of its list is the value; empty: none
+    std::vector<std::string> is;      // of verdict and mechanism: one of these it must be
     std::string says;                 // what a fault or warning must have in its text
     std::optional<double> tolerance;  // relative to |value|
     std::optional<double> tolerance_absolute;

@@ -8,12 +8,15 @@ namespace talus::spec {
 namespace {
 
 Shape until() {
-    return table("until", "When a stage ends: at the time or in equilibrium, whichever comes first.",
-                 {{"time", number("s", positive), optional, "length of the stage"},
-                  {"equilibrium", number("1", positive), optional, "ends when the unbalanced ratio stays below this"},
-                  {"iterations", integer({1, 1000000000}), optional,
-                   "of a static stage at most, 100000 if not given; a `time` ends none"}},
-                 {{Rule::Count::at_least_one, {"time", "equilibrium"}}});
+    return table(
+        "until", "When a stage ends: at the time or in equilibrium, whichever comes first.",
+        {{"time", number("s", positive), optional, "length of the stage"},
+         {"equilibrium", number("1", positive), optional, "ends when the unbalanced ratio stays below this"},
+         {"iterations", integer({1, 1000000000}), optional,
+          "of a static stage at most, 100000 if not given; a `time` ends none"},
+         {"verdict", boolean(), optional,
+          "of `run`: ends as soon as it is certain whether the blocks stand; `time` is then the most that is computed"}},
+        {{Rule::Count::at_least_one, {"time", "equilibrium"}}});
 }
 
 Shape damping() {
@@ -65,6 +68,10 @@ Shape components() {
 Shape observable() {
     return titled("observable", "A quantity that can be recorded; see the table of quantities.",
                   choice(names_of_quantities(true)));
+}
+
+Shape verdicts() {
+    return choice({"stable", "unstable", "undecided", "none", "slide", "topple", "slide and topple", "fall", "rotation"});
 }
 
 std::vector<Key> place() {
@@ -162,7 +169,7 @@ Shape expectation() {
     return table(
         "expectation",
         "One number that must come out. Of `value` and `same_as` (with a tolerance), `above` and `below` exactly one is "
-        "given, and none for `stable`, `unstable`, `fault` and `warning`.",
+        "given, and none for `stable`, `unstable`, `verdict`, `mechanism`, `fault` and `warning`.",
         joined({{{"quantity", choice(names_of_quantities(false)), required, "see the table of quantities"}},
                 direction(),
                 place(),
@@ -182,6 +189,8 @@ Shape expectation() {
                  {"above", number(), optional, "lower bound"},
                  {"below", number(), optional, "upper bound"},
                  {"limit", number("m", positive), derived("1e-3 of the size of the block"), "of stable and unstable"},
+                 {"is", either({verdicts(), list_of(verdicts(), 1)}), optional,
+                  "of verdict and mechanism, which need it: the one that is expected, or a list of those that will do"},
                  {"says", text(), optional, "of fault and warning, which need it: words that must stand in the text"}}}),
         {{Rule::Count::at_most_one, {"value", "same_as", "above", "below"}},
          {Rule::Count::at_most_one, {"point", "joint", "block"}}});

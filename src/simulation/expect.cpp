@@ -38,7 +38,31 @@ std::string description(const ExpectSpec& e, const std::string& name) {
     return text.str();
 }
 
+std::string joined(const std::vector<std::string>& words) {
+    std::string text;
+    for (const std::string& word : words) text += (text.empty() ? "" : " or ") + word;
+    return text;
+}
+
+Verdict judge_verdict(const ExpectSpec& e, const std::optional<StabilityVerdict>& told, BlockId block) {
+    const std::string found = !told                    ? "not told"
+                              : e.measure == "verdict" ? name_of(told->verdict)
+                              : block < 0              ? name_of(told->mechanism)
+                                                       : name_of(told->block_mechanism[static_cast<std::size_t>(block)]);
+    const bool passed = std::find(e.is.begin(), e.is.end(), found) != e.is.end();
+    const std::string of = block < 0 ? "" : " of block " + std::to_string(block);
+    const double measured = passed ? 1.0 : 0.0;
+    return {e.measure + of + " is " + found + (passed ? "" : ", not " + joined(e.is)),
+            measured,
+            1.0,
+            1.0 - measured,
+            0.0,
+            passed};
+}
+
 }  // namespace
+
+bool about_the_verdict(const ExpectSpec& e) { return e.measure == "verdict" || e.measure == "mechanism"; }
 
 Verdict judge(const ExpectSpec& e, const std::string& name, const Signal& observed, const Signal& against) {
     Verdict v{description(e, name), measure(e, observed, against), 0.0, 0.0, 0.0, false};
@@ -56,9 +80,12 @@ Verdict judge(const ExpectSpec& e, const std::string& name, const Signal& observ
     return v;
 }
 
-bool about_what_is_told(const ExpectSpec& e) { return e.measure == "fault" || e.measure == "warning"; }
+bool about_what_is_told(const ExpectSpec& e) {
+    return e.measure == "fault" || e.measure == "warning" || about_the_verdict(e);
+}
 
-Verdict judge(const ExpectSpec& e, const Told& told) {
+Verdict judge(const ExpectSpec& e, const Told& told, BlockId block) {
+    if (about_the_verdict(e)) return judge_verdict(e, told.verdict, block);
     const auto has = [&](const std::string& text) { return text.find(e.says) != std::string::npos; };
     const bool there = e.measure == "fault" ? !told.fault.empty() && has(told.fault)
                                             : std::any_of(told.warnings.begin(), told.warnings.end(), has);
@@ -69,10 +96,11 @@ Verdict judge(const ExpectSpec& e, const Told& told) {
 Watch::Watch(const std::vector<ExpectSpec>& expects, const Model& model, const State& state) {
     for (const ExpectSpec& e : expects) {
         if (about_what_is_told(e)) {
-            watched_.push_back({e, {}, {}});
+            const bool of_a_block = e.probe.point || !e.probe.block.empty();
+            watched_.push_back({e, {}, of_a_block ? observed_block(e.probe, model, state) : -1, {}});
             continue;
         }
-        Watched w{e, {make_probe(e.probe, model, state)}, {}};
+        Watched w{e, {make_probe(e.probe, model, state)}, -1, {}};
         if (e.against) w.probes.push_back(make_probe(*e.against, model, state));
         w.signals.resize(w.probes.size());
         watched_.push_back(std::move(w));
@@ -100,7 +128,7 @@ void Watch::record(const Model& model, const State& state, const Gauges& gauges)
 std::vector<Verdict> Watch::judge(const Told& told) const {
     std::vector<Verdict> verdicts;
     for (const Watched& w : watched_)
-        verdicts.push_back(w.probes.empty() ? talus::judge(w.expect, told)
+        verdicts.push_back(w.probes.empty() ? talus::judge(w.expect, told, w.block)
                                             : talus::judge(w.expect, w.probes[0].name, w.signals[0],
                                                            w.signals.size() > 1 ? w.signals[1] : Signal{}));
     return verdicts;

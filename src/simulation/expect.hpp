@@ -2,9 +2,11 @@
 #pragma once
 
 #include "model/probe.hpp"
+#include "model/verdict.hpp"
 #include "scenario/scenario.hpp"
 #include "simulation/signal.hpp"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,13 +24,16 @@ struct Verdict {
 
 /// What a run had to say beside its numbers.
 struct Told {
-    std::string fault;                  // why it was refused or ended early; empty: it came to its end
-    std::vector<std::string> warnings;  // about the scene, and about how the run went
+    std::string fault;                        // why it was refused or ended early; empty: it came to its end
+    std::vector<std::string> warnings;        // about the scene, and about how the run went
+    std::optional<StabilityVerdict> verdict;  // none: the run did not come to its end
 };
 
-/// Whether what was expected to be told was: a fault, or a warning. Measured: 1 told, 0 not.
-Verdict judge(const ExpectSpec& expect, const Told& told);
+/// Whether what was expected to be told was: a fault, or a warning, or the verdict on the whole or on block `block` (-1: the
+/// whole). Measured: 1 told, 0 not.
+Verdict judge(const ExpectSpec& expect, const Told& told, BlockId block = -1);
 bool about_what_is_told(const ExpectSpec& expect);
+bool about_the_verdict(const ExpectSpec& expect);
 
 /// What one expectation says about signals already recorded; `against` is the second axis of loop_area.
 ///   value      the signal at `at`, or at its end           rate       mean rate of change between two times
@@ -50,6 +55,7 @@ private:
     struct Watched {
         ExpectSpec expect;
         std::vector<Probe> probes;    // one; two for loop_area; none for what is told
+        BlockId block = -1;           // whose mechanism is told
         std::vector<Signal> signals;  // one for each probe
     };
     std::vector<Watched> watched_;

@@ -168,35 +168,46 @@ void Recorder::save_restart(const Simulation& simulation) {
 
 void Recorder::finish(const Simulation& simulation, const std::string& status, double wall_time) {
     const double cpu_time = cpu_.seconds() - cpu_of_recording_;
-    if (status != "diverged" && status != "refused") save_restart(simulation);
+    std::optional<StabilityVerdict> verdict;
+    if (status != "diverged" && status != "refused") {
+        save_restart(simulation);
+        verdict = simulation.verdict();
+    }
     writer_.finish({status, wall_time, cpu_time, simulation.state().total_steps, simulation.state().time,
-                    simulation.energy_gain(), simulation.state().statics});
+                    simulation.energy_gain(), simulation.state().statics, verdict});
 }
 
-void Recorder::close(const std::string& status) { writer_.finish({status, 0.0, 0.0, 0, 0.0, 0.0, {}}); }
+void Recorder::close(const std::string& status) {
+    RunSummary summary;
+    summary.status = status;
+    writer_.finish(summary);
+}
 
 std::string Recorder::restart_file() const { return restart_path(path()); }
 
 void check_probes(const Simulation& simulation) {
-    std::vector<ProbeSpec> probes;
+    std::vector<ProbeSpec> probes, blocks;
     for (const HistorySpec& history : simulation.scenario().record.history)
         probes.insert(probes.end(), history.probes.begin(), history.probes.end());
     for (const ExpectSpec& expect : simulation.scenario().expect) {
+        if (about_the_verdict(expect) && (expect.probe.point || !expect.probe.block.empty())) blocks.push_back(expect.probe);
         if (about_what_is_told(expect)) continue;
         probes.push_back(expect.probe);
         if (expect.against) probes.push_back(*expect.against);
     }
     const State start = simulation.first_state();
     std::vector<Fault> faults;
-    for (const ProbeSpec& probe : probes) {
+    const auto check = [&](const ProbeSpec& probe, auto&& find) {
         try {
-            make_probe(probe, simulation.model(), start);
+            find(probe, simulation.model(), start);
         } catch (const InputError& error) {
             const Fault& found = error.faults().front();  // a history reads several quantities at one place: said once
             if (faults.empty() || faults.back().key != found.key || faults.back().message != found.message)
                 faults.push_back(found);
         }
-    }
+    };
+    for (const ProbeSpec& probe : probes) check(probe, make_probe);
+    for (const ProbeSpec& probe : blocks) check(probe, observed_block);
     if (!faults.empty()) throw InputError(std::move(faults));
 }
 
@@ -223,7 +234,7 @@ Outcome run(Simulation& simulation, const RunOptions& options) {
         }
         if (simulation.timeless()) watch();
         if (options.recorder) options.recorder->end_stage(simulation);
-        if (simulation.stage().until.equilibrium && !simulation.reached_equilibrium()) {
+        if (simulation.stage().until.equilibrium && !simulation.reached_equilibrium() && !simulation.ended_by_verdict()) {
             settled = false;
             if (options.out_of_time) options.out_of_time(simulation);
         }

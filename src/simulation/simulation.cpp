@@ -5,6 +5,7 @@
 #include "dynamics/motion.hpp"
 #include "model/part_boxes.hpp"
 #include "rigid/scratch.hpp"
+#include "verdict/course.hpp"
 
 #ifdef _OPENMP
 #include <omp.h>
@@ -128,6 +129,7 @@ void Simulation::step() {
     ++steps_done_;
     watch_.lap();
     (this->*method().step)(dt);
+    if (look_is_due(state_)) look_at_blocks();
     lap(Part::move);
 }
 
@@ -305,6 +307,10 @@ void Simulation::begin_stage() {
     (this->*method().begin)();
     state_.ledger.kinetic0 += ledger_error();
     state_.ledger.total0 = energies().total() - drift;
+    if (recorded() && !timeless())
+        begin_course(model_, circumstances(), state_);
+    else
+        state_.course = {};
     release_unused_memory();
 }
 
@@ -323,6 +329,7 @@ bool Simulation::end_stage() {
         state_.time = 0.0;
         state_.step = 0;
         state_.ledger = Ledger{};
+        state_.course = {};
         for (Contact& c : state_.contacts.list)
             if (c.dilation == 0.0) c.slip = c.slip_sum = 0.0;
     }
@@ -336,6 +343,7 @@ bool Simulation::stage_over() {
         return static_over();
     }
     const Until& until = stage().until;
+    if (ended_by_verdict()) return true;
     if (until.time && state_.stage_time >= *until.time * (1.0 - 1e-12)) return true;
     if (!until.equilibrium || state_.step % calm_interval != 0 || state_.stage_time == 0.0) return false;
     state_.calm_checks = unbalanced_ratio(model_, state_) < *until.equilibrium ? state_.calm_checks + 1 : 0;

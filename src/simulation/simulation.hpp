@@ -9,8 +9,10 @@
 #include "model/build.hpp"
 #include "model/measure.hpp"
 #include "model/placed.hpp"
+#include "model/verdict.hpp"
 #include "simulation/plan.hpp"
 #include "statics/static_solver.hpp"
+#include "verdict/footing.hpp"
 
 #include <array>
 #include <memory>
@@ -22,6 +24,7 @@ namespace talus {
 namespace rigid {
 struct Scratch;
 }
+struct Circumstances;
 
 enum class Part { move, place, search, contacts, sum, account };  // of a step, for the timing
 inline constexpr std::array<const char*, 6> part_names{"move", "place", "search", "contacts", "sum", "account"};
@@ -50,7 +53,7 @@ public:
     bool end_stage();
 
     void step();        // one time step; the last one of a timed stage is cut to end exactly
-    bool stage_over();  // by time, or by equilibrium (looked at every 10 steps)
+    bool stage_over();  // by time, by equilibrium (looked at every 10 steps), or by a verdict
 
     const Scenario& scenario() const { return scenario_; }  // with nothing left open
     const Decisions& decisions() const { return decisions_; }
@@ -68,6 +71,8 @@ public:
     bool recorded() const { return state_.stage >= first_recorded_; }  // no later stage sets the clock back
     double recorded_time() const;  // s, length of the recorded stages as far as it is given
     bool reached_equilibrium() const { return equilibrium_; }
+    bool ended_by_verdict() const;  // it is certain whether the blocks stand, and the stage was to end then
+    StabilityVerdict verdict() const;
     Energies energies() const;
     double energy_drift() const { return energies().total() - state_.ledger.total0; }  // J
     /// Largest energy that came from nowhere, over the largest energy of the run (at least the work of gravity, of loads and
@@ -132,6 +137,10 @@ private:
     void freeze_and_wake();
     void find_awake(bool list_renewed = false);  // then, or after blocks froze or woke
 
+    Circumstances circumstances() const;
+    bool loads_are_on() const;
+    void look_at_blocks();
+
     void apply_stage();  // what a stage changes in the model; idempotent
     void delete_blocks();
     void check_stages() const;
@@ -167,6 +176,7 @@ private:
     Vec2 resting_gravity_;                  // m/s2, for which the load of all that rests was found; NaN = not yet
     double skin_ = 0.0;
     std::unique_ptr<StaticSolver> statics_;
+    Footing footing_;
     std::unique_ptr<rigid::Scratch> rigid_;  // of the rigid solver, while it is at work
 
     StableStep stable_;

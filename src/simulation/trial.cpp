@@ -67,6 +67,7 @@ Trial try_out(const Scenario& scenario, const std::map<std::string, Trial>& earl
             std::ranges::any_of(expects, [](const ExpectSpec& e) { return e.probe.quantity == "equilibrium"; });
         if (!asked) options.out_of_time = [&](const Simulation& s) { told.fault = out_of_time(s); };
         run(*simulation, options);
+        told.verdict = simulation->verdict();
     } catch (const DivergenceError& error) {
         told.fault = std::string("diverged: ") + error.what();
     } catch (const InputError& error) {

@@ -23,10 +23,11 @@ const std::map<std::string, std::set<std::string>> may_enter = {
     {"dynamics", {"core", "geometry", "model"}},
     {"rigid", {"core", "geometry", "model", "contact"}},
     {"statics", {"core", "geometry", "model", "contact", "dynamics"}},
+    {"verdict", {"core", "model"}},
     {"terms", {"core", "model"}},
     {"output", {"core", "model"}},
     {"simulation",
-     {"core", "geometry", "scenario", "model", "contact", "dynamics", "rigid", "statics", "terms", "output"}},
+     {"core", "geometry", "scenario", "model", "contact", "dynamics", "rigid", "statics", "verdict", "terms", "output"}},
     {"apps", {"core", "scenario", "model", "output", "simulation"}},
 };
 

@@ -55,6 +55,7 @@ TEST_CASE("the page on the results format names every dataset with its type and 
         RunSummary summary;
         summary.statics.now.iterations = summary.statics.now.newton_steps = 1;
         summary.statics.newton_ratios = {1e-9};
+        summary.verdict.emplace().block_mechanism.resize(model.blocks.size());
         writer.finish(summary);
     }
     const h5::File file = h5::File::open(folder / "run.h5");
@@ -75,14 +76,20 @@ TEST_CASE("the page on the results format names every dataset with its type and 
     }
 }
 
-TEST_CASE("the page on the results format names every attribute of /talus") {
+TEST_CASE("the page on the results format names every attribute of /talus and of the verdict") {
     const Model model = test::l_and_square();
     const test::Folder folder;
-    ResultsWriter(folder / "run.h5", model, test::run_info());
+    {
+        ResultsWriter writer(folder / "run.h5", model, test::run_info());
+        RunSummary summary;
+        summary.verdict.emplace();
+        writer.finish(summary);
+    }
     std::stringstream text;
     text << std::ifstream(TALUS_SOURCE_DIR "/docs/results-format.md").rdbuf();
-    for (const std::string& name : h5::File::open(folder / "run.h5").attributes("/talus")) {
-        INFO(name);
-        CHECK(text.str().find("`" + name + "`") != std::string::npos);
-    }
+    for (const std::string group : {"/talus", "/talus/verdict"})
+        for (const std::string& name : h5::File::open(folder / "run.h5").attributes(group)) {
+            INFO(name);
+            CHECK(text.str().find("`" + name + "`") != std::string::npos);
+        }
 }
