@@ -191,7 +191,7 @@ void ResultsWriter::write_evidence(const Statics& statics) {
 }
 
 void ResultsWriter::write_verdict(const StabilityVerdict& v) {
-    file_.make_group(verdict_group);
+    if (!file_.exists(verdict_group)) file_.make_group(verdict_group);  // else of an earlier end, before the run was resumed
     file_.set(verdict_group, "verdict", std::string(name_of(v.verdict)));
     file_.set(verdict_group, "mechanism", std::string(name_of(v.mechanism)));
     file_.set(verdict_group, "reason", v.reason);
@@ -206,7 +206,7 @@ void ResultsWriter::write_verdict(const StabilityVerdict& v) {
     file_.set(verdict_group, "moving_area", v.moving_area);
     const std::string path = verdict_group + "/block_mechanism";
     if (!file_.exists(path)) file_.make_rows<std::uint8_t>(path, {}, {"1", "blocks"});
-    file_.truncate(path, 0);  // of an earlier end, before the run was resumed
+    file_.truncate(path, 0);
     std::vector<std::uint8_t> codes;
     for (const Mechanism m : v.block_mechanism) codes.push_back(static_cast<std::uint8_t>(m));
     file_.append<std::uint8_t>(path, codes);
