@@ -17,6 +17,8 @@ constexpr double trial_time = 0.5;    // s; shorter and what else the machine do
 constexpr double longest_trial = 2;   // s
 constexpr double iterations = 300.0;  // of a static stage, mostly 100 to 1000
 constexpr double worth_saying = 1.5;  // times faster
+constexpr int most_rigid =
+    5000;  // blocks of which rigid steps are tried for advice: more may take minutes for the first one
 
 // s, the median: other work on the machine makes single steps slower, none faster.
 double time_of_a_step(Simulation& simulation) {
@@ -131,7 +133,8 @@ std::string advice(const Scenario& scenario, const Simulation& simulation, const
         if (chosen.scenario().run.solver == simulation.scenario().run.solver ||
             (chosen.scenario().run.solver == "explicit" && simulation.scenario().run.solver == "auto"))
             return "solver " + chosen.scenario().run.solver + " is right: " + solver.why;
-        const Cost then = predict_cost(chosen);
+        const bool large = chosen.scenario().run.solver == "rigid" && chosen.model().blocks.size() > most_rigid;
+        const Cost then = large ? Cost{.known = false} : predict_cost(chosen);
         if (then.known && now.known && then.seconds > now.seconds) return {};
         std::string text =
             "solver: " + chosen.scenario().run.solver + (damped ? ", without damping," : "") + " would do: " + solver.why;

@@ -36,8 +36,8 @@ public:
 
     Arc arc(int i) const {
         const Vec2 &before = part.normal(part.previous(i)), &after = part.normal(i);
-        const CornerArc arc = corner_arc(before, after, cut_[i]);
-        return {arc, tip(i) + arc.cut * direction(i) - arc.radius * after};
+        const CornerArc own = corner_arc(before, after, cut_[i]);
+        return {own, tip(i) + own.cut * direction(i) - own.radius * after};
     }
 
     Nearest nearest(const Vec2& point) const {

@@ -297,7 +297,7 @@ class Interrupts(Program):
         killed = interrupted = 0
         process = self.start("run", "slope.yaml", "-o", "parts.h5")
         for turn in range(40):
-            if not self.when_running(process, "parts.h5", chance.uniform(0.0, 0.25)):
+            if not self.when_running(process, "parts.h5", chance.uniform(0.0, 0.1)):
                 break
             if turn % 3 == 2:
                 interrupt(process)

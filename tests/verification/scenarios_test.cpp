@@ -26,7 +26,9 @@ std::vector<Verdict> verdicts_of(const Scenario& scenario) {
     const Outcome outcome = run(simulation, options);
     if (std::ranges::none_of(scenario.expect, [](const ExpectSpec& e) { return e.probe.quantity == "equilibrium"; }))
         CHECK(outcome != Outcome::no_equilibrium);
-    return watch.judge();
+    Told told;
+    told.verdict = simulation.verdict();
+    return watch.judge(told);
 }
 
 }  // namespace
