@@ -21,8 +21,8 @@ constexpr int few = 1000;  // contacts: one thread has looked at them by the tim
 // below a hundredth of it; ten times as much, and steps that are a thousandth as high as a block are run over.
 constexpr double touching = 1e-9, narrow = 1e-5, came_in = 1e-4;
 
-// Of a step, from its middle: what hits at its very end must not be missed by rounding, or the next step finds it inside.
 constexpr double none = 2.0;  // share of a step: no impact in it
+// Of a step, from its middle: what hits at its very end must not be missed by rounding, or the next step finds it inside.
 constexpr double at_the_latest = 0.5 * (1.0 + 1e-9);
 
 Vec2 velocity_at(const Velocity& v, const Vec2& arm) { return Vec2(v.x, v.y) + v.spin * perp(arm); }
