@@ -29,6 +29,7 @@ struct Idle {
     int corner = -1, other_corner = -1;
     BlockId block_of_edge = -1, block_of_corner = -1;
     double touch_depth = 0.0;  // m, see touch_depth()
+    double until = 0.0;        // m, sum of the paths of both blocks (Placed::path) below which nothing has to be tested
 };
 
 /// A plain face, alive: where the numbers stand that go into a FaceBatch, so that no chain of look-ups leads to them.

@@ -46,6 +46,7 @@ public:
             sort_changed(chunk);
         changed_ = &chunk.changed;
         for (Idle& idle : chunk.idle) {
+            if (not_yet(placed_, idle)) continue;
             if (idle.corner >= 0 && still_apart(model_, placed_, idle)) continue;
             if (idle.edge >= 0 && edge_separates(contacts_.list[idle.slot], idle.edge)) continue;
             evaluate_single(idle.slot);

@@ -68,7 +68,9 @@ bool place(const Model& model, const Awake& awake, const Motion& motion, double 
     const bool all = placed.boxed.empty();
     const std::vector<BlockRange>& ranges = all ? all_awake(nb).moving : awake.moving;
     placed.corner.resize(model.corners.arm.size());
+    const bool first = placed.block.empty();
     placed.block.resize(nb);
+    placed.path.resize(nb);
     const Vec2 *arm = model.corners.arm.data(), *normal = model.corners.normal.data();
     const int *first_part = model.blocks.first_part.data(), *first_corner = model.parts.first_corner.data();
     PlacedCorner* corner = placed.corner.data();
@@ -89,7 +91,8 @@ bool place(const Model& model, const Awake& awake, const Motion& motion, double 
             for (int i = 0; i < n; ++i) {
                 const int b = begin + i;
                 const Vec2 position = motion.position[b];
-                placed.block[b] = {position, motion.velocity[b], motion.spin[b]};
+                if (!first) placed.add_to_path(b, position, motion.angle[b], model.blocks.radius[b]);
+                placed.block[b] = {position, motion.velocity[b], motion.spin[b], motion.angle[b]};
                 if (!all) inside &= placed.boxed[b].moved(position, motion.angle[b], axis) <= skin;
                 if (!all && model.blocks.inv_inertia[b] == 0.0 && motion.spin[b] == 0.0) continue;
                 const double cosine = c[i], sine = s[i];

@@ -18,6 +18,7 @@ struct PlacedCorner {
 struct PlacedBlock {
     Vec2 position, velocity;  // m, m/s, of the centroid
     double spin;              // rad/s
+    double angle;             // rad
 };
 
 /// A vector in the frame of the axes of boxes, of which the first is given; exact if that is x.
@@ -42,6 +43,17 @@ struct Placed {
     std::vector<PlacedCorner> corner;  // [nc]
     std::vector<PlacedBlock> block;    // [nb]
     std::vector<Boxed> boxed;          // [nb]; empty = no boxes yet
+    // [nb] m, sum over all steps: no point of the block has moved further than this grew. What is decided with it holds
+    // until the sum has grown by so much.
+    std::vector<double> path;
+
+    /// Adds what the block has moved since it was placed last; `radius` (m) is that of the block.
+    void add_to_path(BlockId b, const Vec2& to_position, double to_angle, double radius) {
+        constexpr double upwards = 1.0 + 1e-15;  // of all that rounding could have taken away
+        const PlacedBlock& from = block[b];
+        const double way = std::abs(to_position.x() - from.position.x()) + std::abs(to_position.y() - from.position.y());
+        path[b] = (path[b] + way + std::abs(to_angle - from.angle) * radius) * upwards;
+    }
 };
 
 }  // namespace talus

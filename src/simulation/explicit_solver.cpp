@@ -97,7 +97,8 @@ void Simulation::find_awake(bool list_renewed) {
         changed.push_back(b);
         sort_contacts_again(model_, state_.contacts, b, contact_index_);
         if (state_.frozen(b))
-            placed_.block[b] = {state_.motion.position[b], state_.motion.velocity[b], state_.motion.spin[b]};
+            placed_.block[b] = {state_.motion.position[b], state_.motion.velocity[b], state_.motion.spin[b],
+                                state_.motion.angle[b]};
     }
     if (state_.calm.empty()) {
         awake_ = all_awake(nb);
