@@ -62,7 +62,7 @@ public:
           placed_(placed),
           pairs_(pairs),
           reboxed_(reboxed),
-          old_(state.contacts.list),
+          old_(state.contacts.list.read()),
           index_(index),
           movable_(model, state) {}
 
@@ -157,9 +157,9 @@ void make_incidence(const Model& model, const std::vector<Contact>& list, Contac
 template <class Visit>
 void for_each_neighbour(const Model& model, const Contacts& contacts, const ContactIndex& index, BlockId b, Visit&& visit) {
     if (index.chunks.empty()) return;
-    for (int i = index.first_a[b]; i < index.first_a[b + 1]; ++i) visit(model.parts.block[contacts.list[i].part_b]);
+    for (int i = index.first_a[b]; i < index.first_a[b + 1]; ++i) visit(model.parts.block[contacts.list.key(i).part_b]);
     for (int e = index.first_b[b]; e < index.first_b[b + 1]; ++e)
-        visit(model.parts.block[contacts.list[index.slot_b[e]].part_a]);
+        visit(model.parts.block[contacts.list.key(index.slot_b[e]).part_a]);
 }
 
 }  // namespace
@@ -191,6 +191,7 @@ void refresh_contacts(const Model& model, const Placed& placed, std::span<const 
         index.chunks[k].begin = n;
         index.chunks[k].end = n += static_cast<int>(plans[k].entries.size());
     }
+    const std::vector<Contact>& old = state.contacts.list.read();
     std::vector<Contact> list(n);
     std::vector<Reaction> reaction(n);
 #pragma omp parallel for schedule(dynamic)
@@ -202,16 +203,16 @@ void refresh_contacts(const Model& model, const Placed& placed, std::span<const 
         for (int i = chunk.begin; i < chunk.end; ++i) {
             const Entry& e = plans[k].entries[i - chunk.begin];
             if (e.from >= 0) {
-                list[i] = state.contacts.list[e.from];
+                list[i] = old[e.from];
                 reaction[i] = state.contacts.reaction[e.from];
             } else {
                 list[i] = {.part_a = e.part_a, .part_b = e.part_b, .joint = model.joint_between(e.part_a, e.part_b)};
             }
         }
     }
-    state.contacts.list = std::move(list);
+    state.contacts.list.edit() = std::move(list);
     state.contacts.reaction = std::move(reaction);
-    make_incidence(model, state.contacts.list, index);
+    make_incidence(model, state.contacts.list.read(), index);
 }
 
 void sort_contacts_again(const Model& model, const Contacts& contacts, BlockId block, ContactIndex& index) {
@@ -219,7 +220,7 @@ void sort_contacts_again(const Model& model, const Contacts& contacts, BlockId b
     const auto mark = [&](BlockId a, int slot) { index.chunks[a / blocks_per_chunk].changed.push_back(slot); };
     for (int i = index.first_a[block]; i < index.first_a[block + 1]; ++i) mark(block, i);
     for (int e = index.first_b[block]; e < index.first_b[block + 1]; ++e)
-        mark(model.parts.block[contacts.list[index.slot_b[e]].part_a], index.slot_b[e]);
+        mark(model.parts.block[contacts.list.key(index.slot_b[e]).part_a], index.slot_b[e]);
 }
 
 void find_rest(const Model& model, const State& state, const ContactIndex& index, std::span<const BlockId> changed,

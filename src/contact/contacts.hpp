@@ -37,6 +37,7 @@ struct FaceSlot {
     int slot;  // in the list
     BlockId block_a, block_b;
     int a0, a1, b0, b1;  // corners at the ends of the two edges; those of a and of b start at a0 and at b1
+    int joint;
 };
 
 /// Two corners, each inside the other part (global corner indices); see corner_pair().
@@ -53,7 +54,7 @@ struct ContactIndex {
         int begin = 0, end = 0;
         bool sorted = false;              // whether the kinds below are up to date but for `changed`; all ascending
         std::vector<int> changed;         // contacts that are perhaps of another kind now
-        std::vector<FaceSlot> faces;      // alive, without intact bonds: computed many at a time
+        std::vector<FaceSlot> faces;      // alive, without intact bonds: computed many at a time, see FaceTable
         std::vector<CornerSlot> corners;  // alive: the same
         std::vector<int> others;          // alive: corners in faces, bonds, what has parted and remembers
         std::vector<Idle> idle;           // not alive; also before they are sorted, if nothing has begun or ended since

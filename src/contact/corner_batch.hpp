@@ -7,7 +7,9 @@
 namespace talus {
 
 /// Names as in CornerLines.
-struct CornerBatch : ContactBatch {
+struct CornerBatch : ContactBatch, ContactColumns {
+    static constexpr int size = ContactColumns::size;
+    using Row = ContactColumns::Row;
     Row ax, ay, na1x, na1y, na2x, na2y, bx, by, nb1x, nb1y, nb2x, nb2y, reach, touch_depth;
 };
 

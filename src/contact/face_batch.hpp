@@ -7,16 +7,15 @@
 
 namespace talus {
 
-/// Names as in FaceLines and InitialClosure.
+/// Names as in FaceLines.
 struct FaceBatch : ContactBatch {
     Row a0x, a0y, a1x, a1y, nax, nay, b0x, b0y, b1x, b1y, nbx, nby;
     Row a_lo, a_hi, b_lo, b_hi;
-    Row remembers, s0, s1, sigma0, sigma1;  // sigma in Pa
 };
 
-/// All contacts of the batch over a step dt (0: forces only). `damping`: stiffness-proportional, s. The same bits with every
-/// unit.
-using FaceKernel = void (*)(FaceBatch& batch, double dt, double damping);
+/// All contacts of the batch over a step dt (0: forces only). `damping`: stiffness-proportional, s. What they know is taken
+/// from `columns` and put back there, for those that are valid and loaded. The same bits with every unit.
+using FaceKernel = void (*)(FaceBatch& batch, FaceColumns& columns, double dt, double damping);
 FaceKernel face_kernel(VectorUnit unit);
 
 }  // namespace talus

@@ -86,7 +86,7 @@ double SingleContacts::face_length(const Contact& c) const {
 }
 
 std::optional<CornerSlot> SingleContacts::corners(int i) const {
-    const Contact& c = contacts_.list[i];
+    const Contact& c = list_[i];
     if (c.face >= 0 || c.edge_a >= 0 || !c.touching || model_.rounding_length > 0.0) return {};
     const Couple s = thickened(c, couple(model_, placed_, c));
     std::optional<CornerSlot> found = find_corners(model_, c, s);
@@ -96,7 +96,7 @@ std::optional<CornerSlot> SingleContacts::corners(int i) const {
 }
 
 void SingleContacts::evaluate(int i) {
-    Contact& c = contacts_.list[i];
+    Contact& c = list_[i];
     const Couple s = couple(model_, placed_, c);
     const Couple shifted = thickened(c, s);
     const int edge_a = c.edge_a, edge_b = c.edge_b;
@@ -162,7 +162,7 @@ FaceContact SingleContacts::remembered_face(Contact& c, const Couple& s) {
 }
 
 void SingleContacts::load(int i, const Couple& s, const Pressed& p) {
-    Contact& c = contacts_.list[i];
+    Contact& c = list_[i];
     ShearMemory shear{c.shear_force, c.shear_energy, c.slip, c.slip_sum, c.dilation, c.slipped ? 1.0 : 0.0};
     const Response r =
         respond(model_.joints[c.joint], p, approach(s), dt_, damping_, face_length(c), {c.normal.x(), c.normal.y()}, shear);
@@ -188,10 +188,10 @@ void SingleContacts::load(int i, const Couple& s, const Pressed& p) {
     work.released += r.released;
 }
 
-void SingleContacts::unload(int i) { part(i, couple(model_, placed_, contacts_.list[i]), {}); }
+void SingleContacts::unload(int i) { part(i, couple(model_, placed_, list_[i]), {}); }
 
 void SingleContacts::part(int i, const Couple& s, const Separation& known) {
-    Contact& c = contacts_.list[i];
+    Contact& c = list_[i];
     if (!c.alive) return;
     if (c.shear_force != 0.0) {
         const Vec2 arm = c.point - placed_.block[s.block_a].position;
@@ -213,7 +213,7 @@ void SingleContacts::part(int i, const Couple& s, const Separation& known) {
     }
 }
 
-void SingleContacts::end_face(int i) { end_face(contacts_.list[i], couple(model_, placed_, contacts_.list[i])); }
+void SingleContacts::end_face(int i) { end_face(list_[i], couple(model_, placed_, list_[i])); }
 
 void SingleContacts::end_face(Contact& c, const Couple& s) {
     break_bonds(c, s);

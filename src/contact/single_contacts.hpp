@@ -36,7 +36,12 @@ public:
     bool changed = false;  // set when the contact is perhaps of another kind now, or has begun or ended
 
     SingleContacts(const Model& model, const Placed& placed, double dt, Contacts& contacts)
-        : model_(model), placed_(placed), dt_(dt), damping_(dt > 0.0 ? model.contact_damping : 0.0), contacts_(contacts) {}
+        : model_(model),
+          placed_(placed),
+          dt_(dt),
+          damping_(dt > 0.0 ? model.contact_damping : 0.0),
+          contacts_(contacts),
+          list_(contacts.list.behind()) {}
 
     /// Geometry and law of one contact of the list.
     void evaluate(int i);
@@ -62,6 +67,7 @@ private:
     const Placed& placed_;
     double dt_, damping_;
     Contacts& contacts_;
+    std::vector<Contact>& list_;
 };
 
 }  // namespace talus

@@ -26,19 +26,19 @@ public:
           damping_(dt > 0.0 ? model.contact_damping : 0.0),
           state_(state),
           contacts_(state.contacts),
+          list_(state.contacts.list.behind()),
           index_(index),
           kernels_(kernels),
           single_(model, placed, dt, state.contacts) {
         for (int k = 0; k < ContactBatch::size; ++k) {
             faces_.a_lo[k] = faces_.a_hi[k] = faces_.b_lo[k] = faces_.b_hi[k] = 1.0;
             joint_of_face_[k] = joint_of_corner_[k] = -1;
-            corners_.face_length[k] = 0.0;
-            set_memory(k, -1);
         }
     }
 
-    void operator()(ContactIndex::Chunk& chunk, ContactWork& work) {
+    void operator()(ContactIndex::Chunk& chunk, FaceTable& table, ContactWork& work) {
         single_.work = {};
+        table_ = &table;
         // To put one contact into its place takes as long as to look at some eight in their order.
         if (!chunk.sorted || 8 * static_cast<int>(chunk.changed.size()) > chunk.end - chunk.begin)
             sort(chunk);
@@ -48,15 +48,21 @@ public:
         for (Idle& idle : chunk.idle) {
             if (not_yet(placed_, idle)) continue;
             if (idle.corner >= 0 && still_apart(model_, placed_, idle)) continue;
-            if (idle.edge >= 0 && edge_separates(contacts_.list[idle.slot], idle.edge)) continue;
+            if (idle.edge >= 0 && edge_separates(list_[idle.slot], idle.edge)) continue;
             evaluate_single(idle.slot);
-            if (!contacts_.list[idle.slot].alive) look_for_edge(idle);
+            if (!list_[idle.slot].alive) look_for_edge(idle);
         }
-        for (std::size_t j = 0; j < chunk.faces.size(); ++j) {
-            if (j + ahead < chunk.faces.size()) fetch(chunk.faces[j + ahead].slot);
-            collect(chunk.faces[j]);
+        std::span<const FaceSlot> faces = chunk.faces;
+        for (int batch = 0; !faces.empty(); ++batch) {
+            const std::size_t count = std::min<std::size_t>(faces.size(), FaceBatch::size);
+            const auto next = faces.subspan(count);
+            compute_faces(faces.first(count), table.columns(batch), [&] {
+                if (next.empty()) return;
+                fetch(table.columns(batch + 1));
+                for (const FaceSlot& f : next.first(std::min<std::size_t>(next.size(), FaceBatch::size))) fetch(f);
+            });
+            faces = next;
         }
-        finish_faces();
         for (const CornerSlot& corner : chunk.corners) collect(corner);
         finish_corners();
         for (const int i : chunk.others) evaluate_single(i);
@@ -72,16 +78,9 @@ private:
                                      : separation_by_edge(s.b, edge - s.b.first, s.a, -s.dx, -s.dy);
         return distance >= -touch_depth(model_, c.part_a, c.part_b);
     }
-    // Contacts lie further apart than the processor looks ahead on its own.
-    static constexpr std::size_t ahead = 8;
-    void fetch(int i) const {
-        const char* contact = reinterpret_cast<const char*>(&contacts_.list[i]);
-        for (std::size_t line = 0; line < sizeof(Contact); line += 64) __builtin_prefetch(contact + line, 1);
-        __builtin_prefetch(&contacts_.reaction[i], 1);
-    }
 
     void look_for_edge(Idle& idle) const {
-        const Contact& c = contacts_.list[idle.slot];
+        const Contact& c = list_[idle.slot];
         const Couple s = couple(model_, placed_, c);
         const Separation apart = separation(s.a, s.b, s.dx, s.dy);
         // Since the refresh both blocks may have moved by the skin, and may move back as far on the other side.
@@ -103,12 +102,14 @@ private:
     void sort(ContactIndex::Chunk& chunk) const {  // after a refresh, and where many blocks froze or woke
         const std::vector<Idle> known = std::exchange(chunk.idle, {});
         auto next = known.begin();
+        table_->store(list_);
+        table_->clear();
         chunk.faces.clear();
         chunk.corners.clear();
         chunk.others.clear();
         chunk.changed.clear();
         for (int i = chunk.begin; i < chunk.end; ++i) {
-            if (both_frozen(contacts_.list[i])) continue;
+            if (both_frozen(list_[i])) continue;
             while (next != known.end() && next->slot < i) ++next;
             add(i, next != known.end() && next->slot == i ? *next : Idle{.slot = i}, chunk);
         }
@@ -118,21 +119,21 @@ private:
     // What has begun or ended in the step before, or changed its edges, and contacts of blocks that froze or woke.
     void sort_changed(ContactIndex::Chunk& chunk) const {
         for (const int i : chunk.changed) {
-            remove(chunk.faces, i);
+            remove_face(i, chunk);
             remove(chunk.corners, i);
             remove(chunk.others, i);
             remove(chunk.idle, i);
-            if (!both_frozen(contacts_.list[i])) add(i, {.slot = i}, chunk);
+            if (!both_frozen(list_[i])) add(i, {.slot = i}, chunk);
         }
         chunk.changed.clear();
     }
 
     void add(int i, const Idle& idle, ContactIndex::Chunk& chunk) const {
-        const Contact& c = contacts_.list[i];
+        const Contact& c = list_[i];
         if (!c.alive)
             insert(chunk.idle, idle);
         else if (plain_face(c))
-            insert(chunk.faces, face_slot(i));
+            insert_face(i, chunk);
         else if (const auto corners = single_.corners(i))
             insert(chunk.corners, *corners);
         else
@@ -158,26 +159,37 @@ private:
         if (place != all.end() && slot_of(*place) == slot) all.erase(place);
     }
 
+    void insert_face(int i, ContactIndex::Chunk& chunk) const {
+        const auto place = place_of(chunk.faces, i);
+        table_->insert(static_cast<int>(place - chunk.faces.begin()), i, list_[i], model_.faces);
+        chunk.faces.insert(place, face_slot(i));
+    }
+    void remove_face(int i, ContactIndex::Chunk& chunk) const {
+        const auto place = place_of(chunk.faces, i);
+        if (place == chunk.faces.end() || place->slot != i) return;
+        const int at = static_cast<int>(place - chunk.faces.begin());
+        table_->store(at, list_);
+        table_->erase(at);
+        chunk.faces.erase(place);
+    }
+
     bool both_frozen(const Contact& c) const {
         return state_.frozen(model_.parts.block[c.part_a]) && state_.frozen(model_.parts.block[c.part_b]);
     }
 
     // ---- what all batches have in common
 
-    void collect_common(ContactBatch& q, int k, int i, BlockId block_a, BlockId block_b,
-                        int (&joint_of_column)[ContactBatch::size]) {
-        const Contact& c = contacts_.list[i];
+    void collect_common(ContactBatch& q, int k, int i, int joint, BlockId block_a, BlockId block_b,
+                        int (&joint_of_column)[ContactBatch::size]) const {
         const PlacedBlock &a = placed_.block[block_a], &b = placed_.block[block_b];
         q.slot[k] = i;
+        q.position_x[k] = a.position.x(), q.position_y[k] = a.position.y();
         q.dx[k] = b.position.x() - a.position.x(), q.dy[k] = b.position.y() - a.position.y();
         q.vax[k] = a.velocity.x(), q.vay[k] = a.velocity.y(), q.spin_a[k] = a.spin;
         q.vbx[k] = b.velocity.x(), q.vby[k] = b.velocity.y(), q.spin_b[k] = b.spin;
-        if (c.joint != joint_of_column[k]) {
-            set_joint(q, k, c.joint);
-            joint_of_column[k] = c.joint;
-        }
-        q.force[k] = c.shear_force, q.energy[k] = c.shear_energy, q.slip[k] = c.slip, q.slip_sum[k] = c.slip_sum;
-        q.dilation[k] = c.dilation, q.slipped[k] = c.slipped, q.nx[k] = c.normal.x(), q.ny[k] = c.normal.y();
+        if (joint == joint_of_column[k]) return;
+        set_joint(q, k, joint);
+        joint_of_column[k] = joint;
     }
 
     void set_joint(ContactBatch& q, int k, int j) const {
@@ -189,16 +201,7 @@ private:
     }
 
     void take(const ContactBatch& q, int k) {
-        const int i = q.slot[k];
-        Contact& c = contacts_.list[i];
-        c.touching = 1;
-        c.sliding = q.sliding[k] != 0.0, c.slipped = q.slipped[k] != 0.0;
-        c.length = q.length[k], c.overlap = q.overlap[k] - q.dilation[k];
-        c.normal_force = q.normal_force[k], c.shear_force = q.force[k], c.shear_energy = q.energy[k];
-        c.strength = q.strength[k], c.slip = q.slip[k], c.slip_sum = q.slip_sum[k], c.dilation = q.dilation[k];
-        c.point = placed_.block[model_.parts.block[c.part_a]].position + Vec2(q.x[k], q.y[k]);
-        c.normal = {q.nx[k], q.ny[k]};
-        contacts_.reaction[i] = {{q.fx[k], q.fy[k]}, q.torque_a[k], q.torque_b[k]};
+        contacts_.reaction[q.slot[k]] = {{q.fx[k], q.fy[k]}, q.torque_a[k], q.torque_b[k]};
         single_.work.friction += q.friction[k];
         single_.work.damping += q.damping[k];
         single_.work.released += q.released[k];
@@ -216,30 +219,59 @@ private:
         return std::find(first, first + model_.joints[face.joint].cells, 0) != first + model_.joints[face.joint].cells;
     }
     FaceSlot face_slot(int i) const {
-        const Contact& c = contacts_.list[i];
+        const Contact& c = list_[i];
         const Parts& parts = model_.parts;
         const auto next = [&](PartId p, int k) {
             return k + 1 == parts.first_corner[p + 1] ? parts.first_corner[p] : k + 1;
         };
-        return {i,        parts.block[c.part_a],    parts.block[c.part_b],
-                c.edge_a, next(c.part_a, c.edge_a), next(c.part_b, c.edge_b),
-                c.edge_b};
+        return {i,
+                parts.block[c.part_a],
+                parts.block[c.part_b],
+                c.edge_a,
+                next(c.part_a, c.edge_a),
+                next(c.part_b, c.edge_b),
+                c.edge_b,
+                c.joint};
     }
 
-    void collect(const FaceSlot& f) {
+    // What the next batch reads comes nearer while this one is computed.
+    static void fetch(const FaceColumns& columns) {
+        const char* begin = reinterpret_cast<const char*>(&columns);
+        for (std::size_t line = 0; line < sizeof(FaceColumns); line += 64) __builtin_prefetch(begin + line, 1);
+    }
+    void fetch(const FaceSlot& f) const {
+        __builtin_prefetch(&placed_.corner[f.a0]);
+        __builtin_prefetch(&placed_.corner[f.a1]);
+        __builtin_prefetch(&placed_.corner[f.b0]);
+        __builtin_prefetch(&placed_.corner[f.b1]);
+        __builtin_prefetch(&placed_.block[f.block_b]);
+        __builtin_prefetch(&contacts_.reaction[f.slot], 1);
+    }
+
+    template <class Fetch>
+    void compute_faces(std::span<const FaceSlot> faces, FaceColumns& columns, Fetch&& fetch_next) {
+        const int count = static_cast<int>(faces.size());
+        for (int k = 0; k < count; ++k) collect(faces[k], k);
+        fetch_next();
+        kernels_.faces(faces_, columns, dt_, damping_);
+        for (int k = 0; k < count; ++k) {
+            if (faces_.valid[k] != 0.0 && faces_.loaded[k] != 0.0)
+                take(faces_, k);
+            else
+                compute_alone(k, columns);
+        }
+    }
+
+    void collect(const FaceSlot& f, int k) {
         const PlacedCorner &a0 = placed_.corner[f.a0], &b1 = placed_.corner[f.b1];
         const Vec2 &a1 = placed_.corner[f.a1].arm, &b0 = placed_.corner[f.b0].arm;
         FaceBatch& q = faces_;
-        const int k = q.count++;
         q.a0x[k] = a0.arm.x(), q.a0y[k] = a0.arm.y(), q.a1x[k] = a1.x(), q.a1y[k] = a1.y();
         q.nax[k] = a0.normal.x(), q.nay[k] = a0.normal.y();
         q.b0x[k] = b0.x(), q.b0y[k] = b0.y(), q.b1x[k] = b1.arm.x(), q.b1y[k] = b1.arm.y();
         q.nbx[k] = b1.normal.x(), q.nby[k] = b1.normal.y();
-        collect_common(q, k, f.slot, f.block_a, f.block_b, joint_of_face_);
-        const Contact& c = contacts_.list[f.slot];
-        if (!convex_) set_ends(k, c);
-        if (c.face >= 0 || q.remembers[k] != 0.0) set_memory(k, c.face);
-        if (q.count == FaceBatch::size) finish_faces();
+        collect_common(q, k, f.slot, f.joint, f.block_a, f.block_b, joint_of_face_);
+        if (!convex_) set_ends(k, list_[f.slot]);
     }
 
     void set_ends(int k, const Contact& c) {
@@ -248,38 +280,21 @@ private:
         faces_.a_lo[k] = f.a_lo, faces_.a_hi[k] = f.a_hi, faces_.b_lo[k] = f.b_lo, faces_.b_hi[k] = f.b_hi;
     }
 
-    void set_memory(int k, int f) {
-        FaceBatch& q = faces_;
-        q.remembers[k] = f >= 0, q.s0[k] = 0.0, q.s1[k] = 1.0, q.sigma0[k] = q.sigma1[k] = q.face_length[k] = 0.0;
-        if (f < 0) return;
-        const JointFace& face = model_.faces[f];
-        q.s0[k] = face.s0, q.s1[k] = face.s1, q.sigma0[k] = face.sigma0, q.sigma1[k] = face.sigma1;
-        q.face_length[k] = face.s1 - face.s0;
-    }
-
-    void finish_faces() {
-        FaceBatch& q = faces_;
-        if (q.count == 0) return;
-        kernels_.faces(q, dt_, damping_);
-        const int count = std::exchange(q.count, 0);
-        for (int k = 0; k < count; ++k) {
-            const bool valid = q.valid[k] != 0.0, loaded = q.loaded[k] != 0.0;
-            if (valid && loaded) {
-                take(q, k);
-                continue;
-            }
-            const int i = q.slot[k];
-            Contact& c = contacts_.list[i];
-            if (valid && c.face >= 0) {
-                single_.unload(i);
-                note(i);
-            } else {  // turned away, or open here: other edges may touch
-                if (c.face >= 0) single_.end_face(i);
-                c.edge_a = c.edge_b = -1;
-                single_.changed = true;
-                evaluate_single(i);
-            }
+    // Turned away, or open: other edges may touch.
+    void compute_alone(int k, FaceColumns& columns) {
+        const int i = faces_.slot[k];
+        Contact& c = list_[i];
+        columns.store(k, c);
+        if (faces_.valid[k] != 0.0 && c.face >= 0) {
+            single_.unload(i);
+            note(i);
+        } else {
+            if (c.face >= 0) single_.end_face(i);
+            c.edge_a = c.edge_b = -1;
+            single_.changed = true;
+            evaluate_single(i);
         }
+        columns.load(k, c, model_.faces);
     }
 
     // ---- two corners in each other
@@ -291,7 +306,9 @@ private:
         q.ax[k] = l.ax, q.ay[k] = l.ay, q.na1x[k] = l.na1x, q.na1y[k] = l.na1y, q.na2x[k] = l.na2x, q.na2y[k] = l.na2y;
         q.bx[k] = l.bx, q.by[k] = l.by, q.nb1x[k] = l.nb1x, q.nb1y[k] = l.nb1y, q.nb2x[k] = l.nb2x, q.nb2y[k] = l.nb2y;
         q.reach[k] = l.reach, q.touch_depth[k] = l.touch_depth;
-        collect_common(q, k, f.slot, f.block_a, f.block_b, joint_of_corner_);
+        const Contact& c = list_[f.slot];
+        collect_common(q, k, f.slot, c.joint, f.block_a, f.block_b, joint_of_corner_);
+        q.load(k, c);
         if (q.count == CornerBatch::size) finish_corners();
     }
 
@@ -302,6 +319,9 @@ private:
         const int count = std::exchange(q.count, 0);
         for (int k = 0; k < count; ++k) {
             if (q.valid[k] != 0.0) {
+                Contact& c = list_[q.slot[k]];
+                c.touching = 1;
+                q.store(k, c);
                 take(q, k);
             } else {
                 single_.changed = true;
@@ -315,6 +335,7 @@ private:
     double dt_, damping_;
     const State& state_;
     Contacts& contacts_;
+    std::vector<Contact>& list_;
     const ContactIndex& index_;
     const Kernels kernels_;
     const bool convex_ = model_.parts.size() == model_.blocks.size();  // no block has an edge inside it
@@ -322,6 +343,7 @@ private:
     CornerBatch corners_;
     int joint_of_face_[ContactBatch::size], joint_of_corner_[ContactBatch::size];
     SingleContacts single_;
+    FaceTable* table_ = nullptr;           // of this chunk
     std::vector<int>* changed_ = nullptr;  // of this chunk
 };
 
@@ -330,17 +352,22 @@ private:
 void update_contacts(const Model& model, const Placed& placed, double dt, State& state, ContactIndex& index) {
     static const Kernels kernels{face_kernel(best_vector_unit()), corner_kernel(best_vector_unit())};
     const int chunks = static_cast<int>(index.chunks.size());
+    std::vector<FaceTable>& tables = state.contacts.list.tables();
+    if (tables.empty())  // the list is new, or somebody has changed it
+        for (ContactIndex::Chunk& chunk : index.chunks) chunk.sorted = false;
+    tables.resize(chunks);
     std::vector<ContactWork> work(chunks);
     if (chunks == 1) {  // see core/parallel.hpp
-        Evaluator(model, placed, dt, state, index, kernels)(index.chunks[0], work[0]);
+        Evaluator(model, placed, dt, state, index, kernels)(index.chunks[0], tables[0], work[0]);
     } else {
 #pragma omp parallel
         {
             Evaluator evaluate(model, placed, dt, state, index, kernels);
 #pragma omp for schedule(dynamic)
-            for (int k = 0; k < chunks; ++k) evaluate(index.chunks[k], work[k]);
+            for (int k = 0; k < chunks; ++k) evaluate(index.chunks[k], tables[k], work[k]);
         }
     }
+    state.contacts.list.fall_behind();
     for (const ContactWork& w : work) {
         state.ledger.friction += w.friction;
         state.ledger.contact_damping += w.damping;

@@ -20,8 +20,8 @@ std::vector<double> contact_forces(const Model& model, const Contacts& contacts)
     std::vector<double> sum(model.blocks.size(), 0.0);
     for (std::size_t i = 0; i < contacts.reaction.size(); ++i) {
         const double size = contacts.reaction[i].force.norm();
-        sum[model.parts.block[contacts.list[i].part_a]] += size;
-        sum[model.parts.block[contacts.list[i].part_b]] += size;
+        sum[model.parts.block[contacts.list.key(i).part_a]] += size;
+        sum[model.parts.block[contacts.list.key(i).part_b]] += size;
     }
     return sum;
 }

@@ -151,6 +151,9 @@ private:
     const h5::File& file_;
 };
 
+const std::vector<Contact>& contacts_of(const State& state) { return state.contacts.list.read(); }
+std::vector<Contact>& contacts_of(State& state) { return state.contacts.list.edit(); }
+
 template <class Archive, class List>
 void transfer_contacts(Archive& to, List& list) {
     to.column("contacts/part_a", "1", list, &Contact::part_a);
@@ -263,7 +266,7 @@ void transfer(Archive& to, AnyState& state) {
     to.list("motion/spin", "rad/s", state.motion.spin);
     to.list("load", "N, N m", state.load);
     to.list("damping", "N, N m", state.damping);
-    transfer_contacts(to, state.contacts.list);
+    transfer_contacts(to, contacts_of(state));
     to.list("contacts/reaction", "N, N m", state.contacts.reaction);
     to.list("contacts/broken", "1", state.contacts.broken);
     to.list("calm", "1", state.calm);

@@ -429,7 +429,7 @@ bool Touches::moved_by_impact(const Bodies& bodies, int body) const {
 void Touches::record(const Model& model, const Placed& placed, const Bodies& bodies, std::span<const Velocity> before,
                      std::span<const Velocity> after, std::span<const Velocity> displacement, double dt, double resolution,
                      State& state) const {
-    std::vector<Contact>& list = state.contacts.list;
+    std::vector<Contact>& list = state.contacts.list.edit();
     std::size_t next = 0;
     const int n = static_cast<int>(list.size());
     for (int i = 0; i < n; ++i) {

@@ -265,7 +265,7 @@ void Simulation::check_stages() const {
             for (const Selector& selector : at.remove)
                 for (BlockId b : select(model, state, selector)) state.removed[b] = 1;
             make_loads(model, state, at.loads_given ? at.loads : scenario_.loads);  // throws if a block is not there
-            std::erase_if(state.contacts.list, [&](const Contact& c) {
+            std::erase_if(state.contacts.list.edit(), [&](const Contact& c) {
                 return state.removed[model.parts.block[c.part_a]] || state.removed[model.parts.block[c.part_b]];
             });
         }

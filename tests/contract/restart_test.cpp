@@ -24,7 +24,7 @@ public:
         for (const auto* list : {&s.load, &s.damping, &s.release}) each(*list);
         each(s.removed);
         each(s.contacts.broken);
-        each(s.contacts.list);
+        each(s.contacts.list.read());
         each(s.contacts.reaction);
         const Ledger& l = s.ledger;
         add(l.total0, l.kinetic0, l.gravity, l.loads, l.contact, l.local_damping, l.driven, l.friction, l.contact_damping,

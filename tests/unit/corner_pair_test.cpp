@@ -150,6 +150,10 @@ TEST_CASE("a batch of corners gives the same bits with every kind of vector regi
         CHECK(one.pressed.overlap == plain.overlap[i]);
     }
     CHECK(valid > 8);
+    constexpr CornerBatch::Row CornerBatch::*rows[] = {
+        &CornerBatch::force, &CornerBatch::energy, &CornerBatch::slip,     &CornerBatch::nx,
+        &CornerBatch::fx,    &CornerBatch::fy,     &CornerBatch::torque_a, &CornerBatch::torque_b,
+        &CornerBatch::x,     &CornerBatch::y,      &CornerBatch::friction, &CornerBatch::damping};
     for (const VectorUnit unit : {VectorUnit::avx2, VectorUnit::avx512}) {
         if (!has(unit)) continue;
         CornerBatch other = given;
@@ -157,10 +161,7 @@ TEST_CASE("a batch of corners gives the same bits with every kind of vector regi
         for (int i = 0; i < CornerBatch::size; ++i) {
             CHECK(other.valid[i] == plain.valid[i]);
             if (plain.valid[i] == 0.0) continue;
-            for (const auto row : {&CornerBatch::force, &CornerBatch::energy, &CornerBatch::slip, &CornerBatch::nx,
-                                   &CornerBatch::fx, &CornerBatch::fy, &CornerBatch::torque_a, &CornerBatch::torque_b,
-                                   &CornerBatch::x, &CornerBatch::y, &CornerBatch::friction, &CornerBatch::damping})
-                CHECK(std::memcmp(&(other.*row)[i], &(plain.*row)[i], sizeof(double)) == 0);
+            for (const auto row : rows) CHECK(std::memcmp(&(other.*row)[i], &(plain.*row)[i], sizeof(double)) == 0);
         }
     }
 }
