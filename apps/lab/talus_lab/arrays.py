@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Callable, Iterator, Mapping, Sequence
+
 import numpy as np
 
 
@@ -31,3 +33,24 @@ def plain(value: object) -> object:
     if isinstance(value, np.ndarray) and value.shape == ():
         return plain(value[()])
     return value.item() if isinstance(value, np.generic) else value
+
+
+class Columns(Mapping[str, np.ndarray]):
+    """A table whose columns are read when they are asked for, once."""
+
+    def __init__(self, names: Sequence[str], read: Callable[[str], np.ndarray]):
+        self._names, self._read = dict.fromkeys(names), read
+        self._known: dict[str, np.ndarray] = {}
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        if name not in self._names:
+            raise KeyError(name)
+        if name not in self._known:
+            self._known[name] = self._read(name)
+        return self._known[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._names)
+
+    def __len__(self) -> int:
+        return len(self._names)

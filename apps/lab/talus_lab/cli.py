@@ -17,8 +17,11 @@ def main(arguments: list[str] | None = None) -> int:
     options = _parser().parse_args(arguments)
     try:
         return options.command(options)
-    except (ResultError, OSError) as error:
+    except ResultError as error:
         print(f"talus-lab: {error}", file=sys.stderr)
+        return BAD_INPUT
+    except OSError as error:
+        print(f"talus-lab: {f'{error.filename}: {error.strerror}' if error.filename else error}", file=sys.stderr)
         return BAD_INPUT
     except KeyboardInterrupt:
         print("talus-lab: interrupted", file=sys.stderr)

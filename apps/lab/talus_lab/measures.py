@@ -135,7 +135,9 @@ def history(run: Run, name: str, column: str | None = None, at: str = "end") -> 
 def _column(run: Run, name: str, column: str | None) -> str:
     columns = [word for word in run.history(name) if word != "time"]
     meant = [word for word in columns if column is None or word == column or word.startswith(f"{column} ")]
-    if len(meant) != 1:
+    if len(meant) > 1:
+        raise ResultError(f"{run.path}: history {name}: say which column of {', '.join(meant)}")
+    if not meant:
         raise ResultError(f"{run.path}: history {name}: no column {column}{nearest(column, columns)}")
     return meant[0]
 

@@ -17,11 +17,13 @@ from talus_lab import layers, measures
 from talus_lab.colors import BlockColors, block_colors, check_color, plain
 from talus_lab.forces import draw_forces, draw_stress
 from talus_lab.layers import Geometry
+from talus_lab.errors import ResultError
 from talus_lab.run import Run
 from talus_lab.style import CM, DPI, STYLE, WIDTH_CM
 from talus_lab.units import quantity
 
 UPRIGHT = 1.7  # inches, the least height at which the label of a colour bar fits beside it
+FARTHEST = 1e15  # m: farther away nothing is told apart in double numbers; and nan is nowhere
 THIN = 0.05  # of the side of a mean block: blocks thinner than this govern the time step and deserve a look
 
 
@@ -86,6 +88,8 @@ def page(run: Run, geometries: list[Geometry], width_cm: float, bar: bool, also:
     bar: there will be a colour bar. also: what must fit in beside them."""
     corners = np.concatenate([_seen(run, geometry) for geometry in [*geometries, *also]])
     low, high = corners.min(axis=0), corners.max(axis=0)
+    if not np.abs(corners).max() < FARTHEST:
+        raise ResultError(f"{run.path}: cannot be drawn, blocks are at {corners.min():.3g} to {corners.max():.3g} m")
     margin = 0.03 * (high - low).max()
     width, height = high - low + 2 * margin
     below = len(geometries) > 1 and width > 1.2 * height

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Iterable, Iterator, Mapping
 import h5py
 import numpy as np
 
-from talus_lab.arrays import frozen, placed, plain, texts
+from talus_lab.arrays import Columns, frozen, placed, plain, texts
 from talus_lab.errors import ResultError, nearest
 
 if TYPE_CHECKING:
@@ -85,9 +85,9 @@ class Run:
     @cached_property
     def blocks(self) -> Mapping[str, np.ndarray]:
         """[blocks] each: name, area [m2], mass [kg], inertia [kg m2], material, region, held, start [blocks, 2] m."""
-        columns = self._table("talus/blocks")
-        columns["start"] = frozen(columns["start"] + self.origin)
-        return MappingProxyType(columns)
+        with self._file() as file:
+            names = tuple(file["talus/blocks"])
+        return Columns(names, self._block_column)
 
     @property
     def block_count(self) -> int:
@@ -264,6 +264,10 @@ class Run:
         return tables.to_pyvista(self, frame)
 
     # Reading
+    def _block_column(self, name: str) -> np.ndarray:
+        column = self._read(f"talus/blocks/{name}")
+        return frozen(column + self.origin) if name == "start" else column
+
     @contextmanager
     def _file(self) -> Iterator[h5py.File]:
         try:

@@ -207,7 +207,7 @@ def test_names_that_fit_nothing_are_faults(study, capsys):
     assert asked(study) == []
 
 
-@pytest.mark.parametrize("text, words", [("", "is missing"), ("a: [", "no YAML"), ("- 1\n", "is missing")])
+@pytest.mark.parametrize("text, words", [("", "is no config"), ("a: [", "no YAML"), ("- 1\n", "is no config")])
 def test_a_file_that_is_no_config_is_refused(study, text, words, capsys):
     (study / "study.yaml").write_text(text)
     assert command(study) == 2

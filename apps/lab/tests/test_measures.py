@@ -64,7 +64,7 @@ def test_stress_along_a_line_comes_in_order_and_leaves_other_joints_out(result):
 
 @pytest.mark.parametrize("name, options, complaint", [
     ("max_displacemnt", {}, "did you mean max_displacement"), ("history", {"name": "slid"}, "did you mean slide"),
-    ("history", {"name": "slide"}, "there are x, a"), ("energy", {"name": "kinetc"}, "did you mean kinetic"),
+    ("history", {"name": "slide"}, "say which column of x, a"), ("energy", {"name": "kinetc"}, "did you mean kinetic"),
     ("energy", {"name": "kinetic", "at": "ende"}, "did you mean end"), ("run_out", {"limt": 1}, "limt")])
 def test_unknown_names_are_told_with_the_right_ones(result, name, options, complaint):
     with pytest.raises(talus_lab.ResultError, match=complaint):

@@ -182,7 +182,7 @@ def test_energies_that_are_nothing_are_left_out(result):
 @pytest.mark.parametrize("options, complaint", [
     (["--color", "sped"], "did you mean speed"), (["--history", "slid"], "did you mean slide"), (["--frame", "7"], "no frame 7"),
     (["--history", "slide", "--columns", "b"], "no column b"), (["--width", "1"], "from 4 to 100"), (["--dpi", "9"], "from 30"),
-    (["--color", "mechanism"], "has no verdict"), (["-o", "nowhere/x.png"], "there is no folder nowhere")])
+    (["--exaggerate", "1e300"], "is at most 1e+09"), (["--color", "mechanism"], "has no verdict"), (["-o", "nowhere/x.png"], "there is no folder nowhere")])
 def test_what_is_not_there_is_told_in_one_line(result, capsys, options, complaint):
     assert main(["plot", str(result), *options]) == 2
     error = capsys.readouterr().err
@@ -200,6 +200,22 @@ def test_help_names_every_field_and_loads_no_library(capsys):
            "assert not {'numpy', 'matplotlib', 'h5py'} & set(sys.modules)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert all(name in done.stdout.replace("\n", " ") for name in colors.COLORS)
+
+
+@pytest.mark.parametrize("option", ["--time", "--exaggerate"])
+def test_numbers_that_are_none_are_refused(result, capsys, option):
+    with pytest.raises(SystemExit) as ended:
+        main(["plot", str(result), option, "nan"])
+    assert ended.value.code == 2 and f"argument {option}" in capsys.readouterr().err
+
+
+def test_blocks_that_are_nowhere_and_folders_are_told(result, tmp_path, capsys):
+    with h5py.File(result, "a") as file:
+        file["talus/frames/position"][2, 1] = np.nan
+    for given, complaint in ((result, "cannot be drawn"), (tmp_path, "is a folder")):
+        assert main(["plot", str(given)]) == 2
+        error = capsys.readouterr().err
+        assert complaint in error and len(error.splitlines()) == 1
 
 
 def test_faults_of_the_user_are_one_line_and_code_2(result, tmp_path, capsys):

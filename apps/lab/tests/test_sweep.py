@@ -44,7 +44,7 @@ def test_values_of_a_parameter(given, expected):
 
 @pytest.mark.parametrize(("given", "fault"), [
     (dict(), "needs one of values, levels"), (dict(values=[]), "is empty"), (dict(from_=30, to=10, step=5), "from 30 to 10 by 5 is empty"),
-    (dict(from_=30, to=10), "from 30 to 10 is empty"), (dict(from_=1, to=2, step=0), "is empty"), (dict(from_=1, to="x", count=3), "p.to: is not a number"),
+    (dict(from_=30, to=10), "from 30 to 10 is empty"), (dict(from_=1, to=2, step=0), "is empty"), (dict(from_=1, to="x", count=3), "p.to: is not a finite number"),
     (dict(from_=1, to=2, count=3, step=1), "both count and step"), (dict(from_=0, to=2, count=3, scale="log"), "ends above 0"),
     (dict(values=[1], mean=3), "has values and mean"), (dict(mean=3, deviation=0), "deviation: is not above 0"), (dict(from_=1, to=2, count=1), "count"),
 ])
@@ -147,6 +147,22 @@ def test_a_sweep_makes_one_table_of_parameters_measures_and_provenance(tmp_path,
         assert sorted(file.name for file in (tmp_path / "out/cases" / row["case"]).iterdir()) == ["log.txt", "status.json"]
 
 
+def test_the_table_is_written_as_parquet_too_if_asked_for(tmp_path, here, capsys, monkeypatch):
+    parquet = pytest.importorskip("pyarrow.parquet", reason="pyarrow is not installed")
+    sweep.sweep(config(tmp_path, parquet=True, measures=["verdict", "max_displacement"], where=["density == 2500"]))
+    found = parquet.read_table(tmp_path / "out/table.parquet")
+    assert [{name: str(value) for name, value in row.items()} for row in found.select(["case", "verdict", "status"]).to_pylist()] == [
+        {name: row[name] for name in ("case", "verdict", "status")} for row in table(tmp_path)]
+    assert found["max_displacement"].to_pylist() == [float(row["max_displacement"]) for row in table(tmp_path)]
+    assert found.schema.field("max_displacement").metadata[b"unit"] == b"m" and found.schema.field("density").type == "double"
+    assert json.loads(found.schema.metadata[b"sweep"])["cases"] == 3
+
+
+def test_parquet_without_its_package_says_what_to_install(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr("talus_lab.sweep.config.find_spec", lambda name: None)
+    assert "parquet: needs the package pyarrow: pip install 'talus-lab[parquet]'" in refused(config(tmp_path, parquet=True), capsys)
+
+
 def test_a_second_call_computes_only_what_is_missing_or_changed(tmp_path, here):
     sweep.sweep(config(tmp_path, keep="results"))
     assert len(runs(here)) == 9
@@ -205,9 +221,68 @@ def test_faults_come_in_one_report_with_file_and_line_and_nothing_is_touched(tmp
     assert {path: path.stat().st_mtime_ns for path in (tmp_path / "out").rglob("*")} == before
 
 
+@pytest.mark.parametrize(("text", "fault"), [
+    ("", "is no config"), ("- a", "is no config"), ("a: [1, 2\nb: 3", ":2 no YAML: expected ',' or ']'"), ("a: &x [*x]", ":1 no YAML: an alias that stands within"),
+    ("scenario: a\noutput: b\nscenario: c", ":3 scenario: stands here for a second time"), (b"title: B\xf6schung", "is no text in UTF-8"),
+    ("materials: {}\nrun: {}", "is a scenario, which `talus run` computes")])
+def test_a_file_that_is_no_config_is_told_in_one_line(tmp_path, text, fault):
+    path = tmp_path / "sweep.yaml"
+    path.write_bytes(text if isinstance(text, bytes) else text.encode())
+    with pytest.raises(ResultError) as told:
+        read_config(path)
+    assert fault in str(told.value) and len(str(told.value).splitlines()) == 1
+
+
+@pytest.mark.parametrize(("changes", "fault"), [
+    (dict(parameters={"a": {"set": 5, "values": [1]}}), "parameters.a.set: is neither a key"), (dict(set={"title=x": 1}), "set: title=x is no key of a scenario"),
+    (dict(parameters={"a": {"set": "title", "levels": {"x": {"title": "b"}}}}), "parameters.a.set: levels say"),
+    (dict(parameters={"a": {"set": "title", "from": 1, "to": float("inf"), "count": 3}}), "parameters.a.to: is not a finite number"),
+    (dict(parameters={"a": {"set": "title", "from": 1, "to": 2, "step": 1e-300}}), "parameters.a: has more than 1000000 values"),
+    (dict(repetitions={"count": 2, "set": {"title": 1}}), "repetitions.set: is neither"), (dict(cluster={"kind": "slrum"}), "did you mean slurm?"),
+    (dict(output="incline.yaml/out"), "incline.yaml is no folder"), (dict(output="."), "output: is the folder of the config"),
+    (dict(measures=[{"name": "x", "measure": "displacement"}]), "needs point"), (dict(measures=[{"name": "x", "measure": "run_out", "limt": 1}]), "did you mean limit?"),
+    (dict(measures=[{"name": "x", "measure": "displacement", "point": "here"}]), "point is not a point [x, y]")])
+def test_what_a_config_must_not_say_is_told_before_talus_is_asked(tmp_path, changes, fault):
+    with pytest.raises(ResultError) as told:
+        read_config(config(tmp_path, **changes))
+    assert fault in str(told.value) and len(str(told.value).splitlines()) == 1
+
+
+def test_more_combinations_than_can_be_meant_are_refused_at_once(tmp_path, here, capsys):
+    wide = {"set": "title", "from": 1, "to": 2000, "step": 1}
+    assert "make 4e+06 combinations" in refused(config(tmp_path, parameters={"a": wide, "b": wide | {"set": "source"}}), capsys)
+    assert "is too large" in refused(config(tmp_path, where=["9**9**9 > friction_deg"]), capsys)
+
+
+def test_a_program_that_is_not_talus_is_told(tmp_path, monkeypatch, capsys):
+    for program in ("/bin/false", "/bin/true"):
+        monkeypatch.setenv("TALUS", program)
+        assert f"{program}: is not talus" in refused(config(tmp_path), capsys)
+
+
+def test_names_in_pictures_are_looked_at_before_anything_is_computed(tmp_path, here, capsys):
+    curve = {"theory": "plane_slide", "slope": "dip", "friction": "friction_deg"}
+    listed = {"a": {"kind": "map", "x": "friction", "value": "max_displacment", "only": {"verdict": "stable"}, "curves": [curve]}}
+    err = refused(config(tmp_path, pictures=listed), capsys).splitlines()
+    assert len(err) == 4 and "pictures.a.x: unknown friction; did you mean friction_deg?" in err[0] and "slope: no column dip" in err[3]
+    assert all("sweep.yaml:" in line for line in err) and runs(here) == []
+
+
+def test_who_asks_for_another_measure_later_hears_what_it_costs(tmp_path, here, capsys):
+    sweep.sweep(config(tmp_path))
+    path = config(tmp_path, measures=["max_displacement", "run_out"])
+    assert main(["sweep", str(path), "--dry-run"]) == 0
+    said = capsys.readouterr().out
+    assert "9 cases that are done run again for run_out: their results were not kept (keep: results)" in said and "9 cases: 9 done; 9 to compute" in said
+    assert main(["sweep", str(path)]) == 0
+    assert "9 cases that are done run again for run_out" in capsys.readouterr().err
+    assert main(["sweep", str(path), "--dry-run"]) == 0
+    assert "0 to compute" in capsys.readouterr().out
+
+
 def test_a_measure_of_what_is_not_recorded_stops_the_sweep(tmp_path, here, capsys):
     path = config(tmp_path, measures=["run_out", {"name": "x", "history": "blok"}])
-    assert "measures[1]: no history blok; did you mean block?" in refused(path, capsys)
+    assert "measures[1]: no history blok; did you mean block?" in refused(path, capsys) and runs(here) == []
     path = config(tmp_path, measures=[{"name": "x", "history": "block", "column": "speed"}])
     assert "no column speed" in refused(path, capsys)
     assert all("measures" not in status(tmp_path, folder.name) for folder in (tmp_path / "out/cases").iterdir() if (folder / "status.json").exists())

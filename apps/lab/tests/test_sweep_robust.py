@@ -16,8 +16,8 @@ from sweeping import Driver, config, runs, stand_in, status, table
 
 from talus_lab import sweep
 from talus_lab.cli import main
-from talus_lab.sweep.engines import engine_of
-from talus_lab.sweep.lock import Lock, owner
+from talus_lab.sweep.engines import _queue, engine_of
+from talus_lab.sweep.lock import Lock, began, owner
 from talus_lab.sweep.pool import LocalPool, WorkerLostError
 from talus_lab.sweep.progress import Progress, duration
 
@@ -67,6 +67,7 @@ def test_a_worker_that_is_killed_costs_one_call():
         while True:  # whoever makes the call kills the other or itself
             lost.result()
             lost = pool.submit(os._exit, 1)
+    wait_until(lambda: not began(calls[0].result()))  # who is about to die may be given a call, and the driver gives it again
     assert pool.submit(sum, [1, 2]).result() == 3
     with pytest.raises(ZeroDivisionError):
         pool.submit(divmod, 1, 0).result()
@@ -306,6 +307,22 @@ def test_a_job_array_for_slurm(tmp_path, monkeypatch, capsys):
     environment = os.environ | {"PYTHONPATH": os.pathsep.join(word for word in sys.path if word)}
     assert subprocess.run(["bash", str(script)], env=environment).returncode == 0
     assert Counter(Counter(runs(here)).values()) == {1: 4}
+
+
+@pytest.mark.parametrize(("kind", "expected"), [
+    ("pbs", ["#PBS -q short", "#PBS -l select=1:ncpus=2:mem=3815MB", "#PBS -l walltime=02:00:00"]),
+    ("slurm", ["#SBATCH -p short", "#SBATCH --cpus-per-task=2", "#SBATCH --mem=4G", "#SBATCH -t 02:00:00"])])
+def test_a_cluster_submits_jobs_of_one_worker_with_what_the_config_says(kind, expected):
+    pytest.importorskip("dask_jobqueue", reason="dask-jobqueue is not installed")
+    made = _queue({"kind": kind, "jobs": 4, "cores": 2, "memory": "4 GB", "walltime": "02:00:00", "queue": "short"})
+    try:
+        lines = made.job_script().splitlines()
+    finally:
+        made.close()
+    assert lines[0] == "#!/usr/bin/env bash" and [line for line in expected if line not in lines] == []
+    call = lines[-1].split()
+    assert call[0] == sys.executable and "--nthreads" in call and call[call.index("--nthreads") + 1] == "2" and "--nworkers" not in call
+    assert made._adaptive.maximum == 4
 
 
 def test_dask_gives_the_same_table(tmp_path, monkeypatch):

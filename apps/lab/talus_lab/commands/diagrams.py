@@ -6,6 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from talus_lab.commands.pictures import check_size, finite
 from talus_lab.errors import ResultError
 
 if TYPE_CHECKING:
@@ -25,7 +26,7 @@ def add(commands: argparse._SubParsersAction) -> None:
     p.add_argument("--y", default="", metavar="PARAMETER")
     p.add_argument("--panel", default="", metavar="PARAMETER", help="one panel for each of its values")
     p.add_argument("--value", default="", metavar="MEASURE", help="the number that is drawn")
-    p.add_argument("--limit", type=float, metavar="NUMBER", help="where it fails: a line on maps, an event for probabilities")
+    p.add_argument("--limit", type=finite, metavar="NUMBER", help="where it fails: a line on maps, an event for probabilities")
     p.add_argument("--by", default="rank", metavar="WAY", help="tornado by rank correlation (rank) or one at a time (range)")
     p.add_argument("--curve", action="append", default=[], metavar="CURVE",
                    help='a line of theory: "dynamic_block_modes slope=P friction=P ratio=P", or "y=FORMULA of x"')
@@ -36,7 +37,6 @@ def add(commands: argparse._SubParsersAction) -> None:
 
 def sweep_plot_command(options: argparse.Namespace) -> int:
     from talus_lab import style
-    from talus_lab.commands.pictures import check_size
     from talus_lab.diagrams.pictures import draw, lists_pictures, read_pictures
     from talus_lab.diagrams.table import read_table
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 import subprocess
 import tempfile
 from pathlib import Path
@@ -12,6 +13,8 @@ from talus_lab.errors import ResultError
 
 if TYPE_CHECKING:
     from talus_lab.run import Run
+
+MOST = 1e9  # times as large: a thousandth of what is still computed well would cross the picture
 
 
 def add(commands: argparse._SubParsersAction) -> None:
@@ -26,20 +29,18 @@ def add(commands: argparse._SubParsersAction) -> None:
     p.add_argument("--columns", default="", metavar="A,B", help="of the history (default: all)")
     which = p.add_mutually_exclusive_group()
     which.add_argument("--frame", type=int, default=-1, metavar="K", help="from 0; -1 is the last (default)")
-    which.add_argument("--time", type=float, metavar="T", help="the frame nearest to this time in s")
+    which.add_argument("--time", type=finite, metavar="T", help="the frame nearest to this time in s")
     p.set_defaults(command=plot_command)
-
 
     a = commands.add_parser("animate", help="make a moving picture of a result, .mp4 if ffmpeg is there, else .gif")
     a.add_argument("file", type=Path, metavar="OUT.h5")
     picture_options(a, "animation, .mp4 or .gif (default: beside the file)")
     frame_options(a)
-    a.add_argument("--from", type=float, dest="begin", metavar="T", help="first frame: the nearest to this time in s")
-    a.add_argument("--to", type=float, dest="end", metavar="T", help="last frame: the nearest to this time in s")
+    a.add_argument("--from", type=finite, dest="begin", metavar="T", help="first frame: the nearest to this time in s")
+    a.add_argument("--to", type=finite, dest="end", metavar="T", help="last frame: the nearest to this time in s")
     a.add_argument("--every", type=int, default=1, metavar="N", help="only every N-th frame")
     a.add_argument("--rate", type=float, default=10.0, metavar="N", help="frames per second (default: 10)")
     a.set_defaults(command=animate_command)
-
 
     e = commands.add_parser("export", help="write the frames of a result for ParaView before 5.12: .vtu files and a .pvd that names them")
     e.add_argument("file", type=Path, metavar="OUT.h5")
@@ -62,7 +63,7 @@ def frame_options(p: argparse.ArgumentParser) -> None:
     p.add_argument("--stress", action="store_true", help="principal stresses of the blocks as crosses")
     p.add_argument("--joints", action="store_true", help="joints coloured by state")
     p.add_argument("--outline", action="store_true", help="where the blocks stood in the first frame, dashed")
-    p.add_argument("--exaggerate", type=float, default=1.0, metavar="X", help="draw movements X times as large")
+    p.add_argument("--exaggerate", type=finite, default=1.0, metavar="X", help="draw movements X times as large")
 
 
 def plot_command(options: argparse.Namespace) -> int:
@@ -70,6 +71,8 @@ def plot_command(options: argparse.Namespace) -> int:
     from talus_lab.run import open_run
 
     given: Path = options.file
+    if given.is_dir():
+        raise ResultError(f"{given}: is a folder; `talus-lab sweep-plot` draws that of a sweep")
     word = options.history or ("energies" if options.energies else "")
     output: Path = options.output or given.with_name(f"{given.stem}{'_' if word else ''}{word}.png")
     style.check_format(output)
@@ -126,11 +129,22 @@ def export_command(options: argparse.Namespace) -> int:
     return 0
 
 
+def finite(text: str) -> float:
+    """The type of an option that takes a number."""
+    number = float(text)
+    if not math.isfinite(number):
+        raise ValueError
+    return number
+
+
 def check_size(options: argparse.Namespace) -> None:
     if not 4 <= options.width <= 100:
         raise ResultError(f"--width {options.width:g}: is in cm, from 4 to 100")
     if options.dpi is not None and not 30 <= options.dpi <= 1200:
         raise ResultError(f"--dpi {options.dpi}: is from 30 to 1200")
+
+    if abs(getattr(options, "exaggerate", 1)) > MOST:
+        raise ResultError(f"--exaggerate {options.exaggerate:g}: is at most {MOST:g}")
 
 
 def check_geometry(scenario: Path, result: Path) -> Run:

@@ -9,6 +9,8 @@ from pathlib import Path
 from types import FrameType
 from typing import TYPE_CHECKING, Mapping
 
+from talus_lab.errors import ResultError
+
 if TYPE_CHECKING:
     from talus_lab.diagrams.pictures import Picture
 
@@ -55,11 +57,15 @@ def _pictures(config: Path) -> Mapping[str, Picture]:
     """Those that the config lists, looked at before hours of computing."""
     from talus_lab import sweep
 
-    if not sweep.read_config(config).pictures:
+    read = sweep.read_config(config)
+    if not read.pictures:
         return {}
-    from talus_lab.diagrams.pictures import read_pictures
+    from talus_lab.diagrams.pictures import read_pictures, unknown_names
 
-    return read_pictures(config)
+    pictures = read_pictures(config)
+    parameters = [*read.parameters, *([sweep.REPETITION] if read.repetitions else [])]
+    read.fault(*unknown_names(pictures, parameters, [*parameters, *(measure.name for measure in read.measures), *sweep.COLUMNS]))
+    return pictures
 
 
 def _draw(folder: Path, pictures: Mapping[str, Picture]) -> None:
@@ -69,8 +75,11 @@ def _draw(folder: Path, pictures: Mapping[str, Picture]) -> None:
 
     table = read_table(folder)
     for name, picture in pictures.items():
-        style.save(draw(table, picture), folder / f"{name}.png", style.DPI)
-        print(folder / f"{name}.png")
+        try:
+            style.save(draw(table, picture), folder / f"{name}.png", style.DPI)
+            print(folder / f"{name}.png")
+        except ResultError as error:  # such as no case that is decided: no reason to leave out the others
+            print(f"talus-lab: no picture {name}: {error}", file=sys.stderr)
 
 
 def _interrupt(number: int, frame: FrameType | None) -> None:

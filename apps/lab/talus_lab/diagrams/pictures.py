@@ -4,17 +4,18 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any, Mapping
+from typing import Any, Mapping, Sequence
 
+import numpy as np
 from matplotlib.figure import Figure
 
 from talus_lab.diagrams.boundaries import Curve
-from talus_lab.diagrams.maps import probability, value_map
+from talus_lab.diagrams.maps import failing, probability, value_map
 from talus_lab.diagrams.modes import modes
 from talus_lab.diagrams.ranking import scatter, tornado
 from talus_lab.diagrams.table import REPETITION, Table
 from talus_lab.errors import ResultError, nearest
-from talus_lab.study.entries import entry, read_yaml, report, section
+from talus_lab.study.entries import entry, read_lines, read_yaml, report, section, strangers
 from talus_lab.style import WIDTH_CM
 
 KINDS = ("modes", "map", "probability", "tornado", "scatter")
@@ -53,8 +54,21 @@ def read_pictures(path: Path) -> Mapping[str, Picture]:
         faults += picture_faults(picture, f"pictures.{name}")
         curves = [entry(Curve, _typed(curve), f"pictures.{name}.curves[{k}]", faults) for k, curve in enumerate(picture.curves)]
         found[name] = replace(picture, curves=curves)
-    report(path, faults)
+    report(path, faults, read_lines(path))
     return found
+
+
+def unknown_names(pictures: Mapping[str, Picture], parameters: Sequence[str], columns: Sequence[str]) -> list[str]:
+    """Faults of pictures of a table that does not exist yet. columns: all of the table, with its parameters."""
+    faults = []
+    for name, picture in pictures.items():
+        where = f"pictures.{name}"
+        for role in ("x", "y", "panel"):
+            faults += strangers(filter(None, [getattr(picture, role)]), parameters, f"{where}.{role}")
+        faults += strangers(filter(None, [picture.value]), columns, f"{where}.value") + strangers(picture.only, columns, f"{where}.only")
+        for k, curve in enumerate(picture.curves):
+            faults += [f"{where}.curves[{k}]: {fault}" for fault in curve.faults(dict.fromkeys(columns))]
+    return faults
 
 
 def _typed(curve: Any) -> Any:
@@ -98,11 +112,11 @@ def draw(table: Table, picture: Picture) -> Figure:
 
 def _axes(table: Table, picture: Picture) -> tuple[str, str | None, str | None]:
     """x, y and panel: those that are given, and for the others what varies, in the order of the config. The two with most values become
-    x and y."""
+    x and y, words if there are not enough numbers."""
     given = [name for name in (picture.x, picture.y, picture.panel) if name]
-    free = [name for name in table.varied() if name not in given and table.columns[name].dtype.kind in "fiub"]
-    most = sorted(free, key=lambda name: -len(set(table.columns[name].tolist())))[:2 - bool(picture.x) - bool(picture.y)]
-    free = [name for name in free if name in most]
+    free = [name for name in table.varied() if name not in given]
+    most = sorted(free, key=lambda name: (bool(table.words(name)), -len(set(table.columns[name].tolist()))))[:2 - bool(picture.x) - bool(picture.y)]
+    free = sorted((name for name in free if name in most), key=lambda name: bool(table.words(name)))  # words have more room beside y
     x = picture.x or (free.pop(0) if free else "")
     alone = picture.kind == "probability" and not picture.y and (picture.x or not free)  # a curve over x
     y = picture.y or (free.pop(0) if free and not alone else "")
@@ -122,7 +136,7 @@ def fitting(table: Table) -> dict[str, Picture]:
     told = {"verdict", "mechanism"} & set(table.columns)
     if any(table.parameters[name].kind == "drawn" for name in table.varied()) or len(table.varied()) > 3:
         return {"tornado": Picture("tornado"), "scatter": Picture("scatter")}
-    if told and (table.varied(REPETITION) or len(table.varied()) == 1):
+    if told and table.varied(REPETITION) and table.varied() and not np.isnan(failing(table, None, None)).all():
         return {"probability": Picture("probability")}
     if len(table.varied()) < 2:
         return {"scatter": Picture("scatter")}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import MISSING, fields
 from pathlib import Path
-from typing import Any, Mapping
+from typing import Any, Iterator, Mapping
 
 import yaml
 
@@ -15,31 +15,48 @@ TYPES = {"str": (str, "a text"), "int": (int, "a whole number"), "float": ((int,
 
 
 def read_yaml(path: Path) -> dict:
-    """The top of the file; empty if it is no mapping. Raises ResultError if it is no YAML."""
+    """The top of the file, a mapping. Raises ResultError if it is none, no YAML, or has a key twice, of which YAML would take the last."""
     try:
+        twice = [(line, key) for key, line, again in _keys(path) if again]
         given = yaml.safe_load(path.read_text(encoding="utf-8"))
-    except (yaml.YAMLError, UnicodeDecodeError) as error:
-        raise ResultError(f"{path}: no YAML: {' '.join(str(error).split())}") from None
-    return given if isinstance(given, dict) else {}
+    except UnicodeDecodeError:
+        raise ResultError(f"{path}: is no text in UTF-8") from None
+    except yaml.YAMLError as error:
+        mark = getattr(error, "problem_mark", None)
+        said = getattr(error, "problem", None) or " ".join(str(error).split())
+        raise ResultError(f"{path}:{mark.line + 1 if mark else ''} no YAML: {said}") from None
+    if twice:
+        raise ResultError("\n".join(f"{path}:{line} {key}: stands here for a second time" for line, key in twice))
+    if not isinstance(given, dict):
+        raise ResultError(f"{path}: is no config, which has keys with values: `key: value`")
+    return given
 
 
 def read_lines(path: Path) -> dict[str, int]:
     """Line of every key of a file that read_yaml has read: `scenes.arch.errors[0]` -> 7."""
-    lines: dict[str, int] = {}
+    return {key: line for key, line, _ in _keys(path)}
 
-    def look(node: yaml.Node | None, where: str) -> None:
+
+def _keys(path: Path) -> Iterator[tuple[str, int, bool]]:
+    """Every key, its line, and whether the same mapping has had it before."""
+
+    def look(node: yaml.Node | None, where: str, above: tuple[int, ...]) -> Iterator[tuple[str, int, bool]]:
+        if id(node) in above:
+            raise yaml.MarkedYAMLError(problem="an alias that stands within itself", problem_mark=node.start_mark)
+        inside = (*above, id(node))
         if isinstance(node, yaml.MappingNode):
+            seen = set()
             for key, value in node.value:
                 inner = f"{where}.{key.value}" if where else str(key.value)
-                lines[inner] = key.start_mark.line + 1
-                look(value, inner)
+                yield inner, key.start_mark.line + 1, inner in seen
+                seen.add(inner)
+                yield from look(value, inner, inside)
         elif isinstance(node, yaml.SequenceNode):
             for k, item in enumerate(node.value):
-                lines[f"{where}[{k}]"] = item.start_mark.line + 1
-                look(item, f"{where}[{k}]")
+                yield f"{where}[{k}]", item.start_mark.line + 1, False
+                yield from look(item, f"{where}[{k}]", inside)
 
-    look(yaml.compose(path.read_text(encoding="utf-8"), yaml.SafeLoader), "")
-    return lines
+    return look(yaml.compose(path.read_text(encoding="utf-8"), yaml.SafeLoader), "", ())
 
 
 def report(path: Path, faults: list[str], lines: Mapping[str, int] = {}) -> None:
@@ -89,7 +106,12 @@ def top(given: dict, known: list[str], faults: list[str], needed: list[str] | No
 
 
 def unknown_keys(given: dict, known: list[str], where: str, faults: list[str]) -> None:
-    faults += [f"{where}{key}: unknown key{nearest(key, known)}" for key in given if key not in known]
+    told = False
+    for key in given:
+        if key not in known:
+            ending = nearest(key, known)
+            faults.append(f"{where}{key}: unknown key{'' if told and ending.startswith('; there are') else ending}")
+            told = told or ending.startswith("; there are")  # all there are need not be said of every key
 
 
 def strangers(names: Any, known: Any, where: str) -> list[str]:

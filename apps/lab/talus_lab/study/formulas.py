@@ -8,17 +8,29 @@ import operator
 import re
 from typing import Any, Callable, Mapping
 
-OPERATIONS = {ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv, ast.Pow: operator.pow,
+
+class FormulaError(ValueError):
+    pass
+
+
+def _power(x: float, y: float) -> float:
+    """Of whole numbers a whole one, as far as numbers are exact: 9**9**9 would have 370 million digits."""
+    try:
+        power = float(x) ** y
+    except OverflowError:
+        raise ValueError(f"{x:g} ** {y:g} is too large") from None
+    if isinstance(power, complex):
+        raise ValueError(f"{x:g} ** {y:g} is not a real number")
+    return x**y if abs(power) < 2**53 else power
+
+
+OPERATIONS = {ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv, ast.Pow: _power,
               ast.USub: operator.neg}
 FUNCTIONS = {"sqrt": math.sqrt, "abs": abs, "min": min, "max": max, "round": round, "sin_deg": lambda x: math.sin(math.radians(x)),
              "cos_deg": lambda x: math.cos(math.radians(x)), "tan_deg": lambda x: math.tan(math.radians(x)),
              "atan_deg": lambda x: math.degrees(math.atan(x))}
 COMPARISONS = {ast.Lt: operator.lt, ast.LtE: operator.le, ast.Gt: operator.gt, ast.GtE: operator.ge, ast.Eq: operator.eq, ast.NotEq: operator.ne}
 LOGIC = {ast.And: all, ast.Or: any}
-
-
-class FormulaError(ValueError):
-    pass
 
 
 def filled(text: object, values: Mapping[str, float]) -> str:

@@ -10,12 +10,12 @@ from pathlib import Path
 
 from talus_lab.program import find_talus
 from talus_lab.sweep.case import DiskError
-from talus_lab.sweep.config import Config, read_config
+from talus_lab.sweep.config import COLUMNS, REPETITION, Config, read_config
 from talus_lab.sweep.driver import Sweep, compute, listing, summary
 from talus_lab.sweep.driver import prepare as _prepare
 from talus_lab.sweep.engines import cores, engine_of
 
-__all__ = ["Config", "DiskError", "Sweep", "listing", "prepare", "read_config", "summary", "sweep"]
+__all__ = ["COLUMNS", "REPETITION", "Config", "DiskError", "Sweep", "listing", "prepare", "read_config", "summary", "sweep"]
 
 
 def prepare(config: str | Path, workers: int | None = None, retry: str = "") -> Sweep:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import json
+import math
 import re
 import subprocess
 from dataclasses import dataclass
@@ -12,7 +13,7 @@ from typing import Any, Iterator, Mapping
 from talus_lab.errors import ResultError
 from talus_lab.study.formulas import FormulaError, evaluate, filled, holds
 from talus_lab.sweep.config import REPETITION, Config, Parameter
-from talus_lab.sweep.ranges import draw, is_drawn, levels_of, number, quantile
+from talus_lab.sweep.ranges import MOST, draw, is_drawn, levels_of, number, quantile
 
 MOST_FAULTS = 20  # in one report: where one key is wrong, a thousand cases say so
 
@@ -28,6 +29,11 @@ class Case:
 
 def cases_of(config: Config, talus: str) -> list[Case]:
     """All cases in the order of the config, the last parameter varying fastest. Raises ResultError with the engine's report."""
+    values = levels(config)
+    count = math.prod(len(column) for name, column in values.items() if name == REPETITION or not is_drawn(config.parameters[name]))
+    count *= config.sample.count if config.sample else 1
+    if count > MOST:
+        config.fault(f"parameters: make {count:.3g} combinations, more than {MOST}")
     combinations = list(_combinations(config))
     if not combinations:
         config.fault("where: no combination of the parameters is left" if config.where else "parameters: there are none")

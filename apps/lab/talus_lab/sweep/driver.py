@@ -2,21 +2,22 @@
 
 from __future__ import annotations
 
+import json
 import queue
 import subprocess
 import time
 from collections import Counter
-from concurrent.futures import CancelledError, Future
+from concurrent.futures import BrokenExecutor, CancelledError, Future
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Mapping, Sequence
 
-from talus_lab.errors import ResultError
-from talus_lab.sweep.case import ELSEWHERE, RESULT, DiskError, KilledError, Record, Task, is_made, read_status, run_case
+from talus_lab.errors import ResultError, nearest
+from talus_lab.sweep.case import ELSEWHERE, FULL, RESULT, DiskError, KilledError, Record, Task, is_made, read_status, run_case
 from talus_lab.sweep.cases import Case, cases_of
 from talus_lab.sweep.config import Config
 from talus_lab.sweep.engines import Engine, cores
-from talus_lab.sweep.measures import MeasureError
+from talus_lab.sweep.measures import MeasureError, history_of
 from talus_lab.sweep.progress import Progress
 from talus_lab.sweep.table import columns_of, write_tables
 
@@ -42,8 +43,14 @@ class Sweep:
     def state(self, case: str) -> str:
         record = self.records[case]
         if not is_made(record, self.tasks[case]) and record.get("status") == "done":
-            return "to measure" if (self.config.output / "cases" / case / RESULT).exists() else "to run again for its measures"
-        return record.get("status", "missing")
+            return "to measure" if (self.config.output / "cases" / case / RESULT).exists() else "to run again"
+        return "to run again" if record and record.get("started") == self.tasks[case].redo else record.get("status", "missing")
+
+    def again(self) -> str:
+        """What was computed and will be once more, and why; or nothing."""
+        cases = [case for case in self.tasks if self.state(case) == "to run again" and not self.tasks[case].redo]
+        asked = [measure.name for measure in self.config.measures if any(measure.key not in self.records[case]["measures"] for case in cases)]
+        return (f"{len(cases)} cases that are done run again for {', '.join(asked)}: their results were not kept (keep: results)") if cases else ""
 
     def counts(self) -> Counter:
         return Counter(self.records[name].get("status", "missing") for name in self.tasks)
@@ -55,12 +62,12 @@ class Sweep:
         try:
             write_tables(self.config, columns_of(self.config, self.cases, self.records))
         except OSError as error:
-            raise DiskError(f"{self.config.output}: {error.strerror}") from None
+            raise (DiskError if error.errno in FULL else ResultError)(f"{self.config.output}: {error.strerror}") from None
 
 
 def prepare(config: Config, talus: str, workers: int, retry: str = "") -> Sweep:
     """Raises ResultError with every fault of the config that only the engine can see."""
-    version = subprocess.run([talus, "--version"], capture_output=True, text=True, check=True).stdout.split()[-1]
+    version = _version(talus)
     cases = cases_of(config, talus)
     keys = tuple(measure.key for measure in config.measures)
     threads = max(1, cores() // workers)
@@ -73,7 +80,29 @@ def prepare(config: Config, talus: str, workers: int, retry: str = "") -> Sweep:
 
     tasks = {case.id: Task(case.id, str(folder / case.id), str(config.scenario), case.overrides, talus, version, keys, threads, config.limit_s,
                            config.keep == "results", redo(records[case.id])) for case in cases}
-    return Sweep(config, cases, tasks, records)
+    found = Sweep(config, cases, tasks, records)
+    _check_histories(found, talus)
+    return found
+
+
+def _version(talus: str) -> str:
+    said = subprocess.run([talus, "--version"], capture_output=True, text=True)
+    if said.returncode != 0 or not said.stdout.startswith("talus "):
+        raise ResultError(f"{talus}: is not talus, which says its version when asked for --version")
+    return said.stdout.split()[-1]
+
+
+def _check_histories(sweep: Sweep, talus: str) -> None:
+    """Whether the scenario records what measures look at: of the first case alone, for only a result knows all, but before hours of computing."""
+    wanted = {k: history_of(measure.key) for k, measure in enumerate(sweep.config.measures) if history_of(measure.key)}
+    if not wanted or not sweep.due():
+        return
+    task = sweep.due()[0]
+    sets = [word for change in task.overrides for word in ("--set", change)]
+    resolved = subprocess.run([talus, "check", task.scenario, "--resolved", *sets], capture_output=True, text=True, encoding="utf-8")
+    if resolved.returncode == 0:
+        there = [history["name"] for history in json.loads(resolved.stdout)["record"].get("history", [])]
+        sweep.config.fault(*(f"measures[{k}]: no history {name}{nearest(name, there)}" for k, name in wanted.items() if name not in there))
 
 
 def compute(sweep: Sweep, engine: Engine, wait: bool = True, progress: Progress | None = None) -> None:
@@ -82,6 +111,8 @@ def compute(sweep: Sweep, engine: Engine, wait: bool = True, progress: Progress 
     due = sweep.due()
     counts = Counter(sweep.records[name]["status"] for name in set(sweep.tasks) - {task.case for task in due})
     progress = progress or Progress(len(sweep.tasks), counts["done"], sum(counts.values()) - counts["done"])
+    if sweep.again():
+        progress.say(sweep.again())
     try:
         _Round(sweep, engine, wait, progress).run(due)
     except MeasureError as error:
@@ -133,12 +164,14 @@ class _Round:
             self._tell(str(error))
         except (ResultError, CancelledError):
             raise
-        except Exception as error:  # of the engine: Dask has its own words for a worker that was lost
+        except Exception as error:
             self.lost[task.case] += 1
-            if self.lost[task.case] < LOST:
+            if not _is_loss(error):
+                self._tell(f"case {task.case}: cannot be computed or measured: {type(error).__name__}: {error}")
+            elif self.lost[task.case] < LOST:
                 self._call(task)
             else:
-                self._tell(f"case {task.case}: lost {LOST} times, the last time because: {error}")
+                self._tell(f"case {task.case}: lost its worker {LOST} times, the last time because: {error}")
         else:
             if record["status"] != ELSEWHERE["status"]:
                 self._keep(task, record)
@@ -163,10 +196,15 @@ class _Round:
                 self._call(task)
 
 
+def _is_loss(error: Exception) -> bool:
+    """Of the worker, not of the case: Dask has its own words for it."""
+    return isinstance(error, BrokenExecutor) or type(error).__module__.startswith("distributed")
+
+
 def listing(sweep: Sweep) -> str:
     """A line for each case: id, state, parameters."""
-    lines = [f"{case.id}  {sweep.state(case.id):<10}  {', '.join(f'{name} {value}' for name, value in case.values.items())}" for case in sweep.cases]
-    return "\n".join([*lines, summary(sweep)])
+    lines = [f"{case.id}  {sweep.state(case.id):<12}  {', '.join(f'{name} {value}' for name, value in case.values.items())}" for case in sweep.cases]
+    return "\n".join([*lines, *filter(None, [sweep.again()]), f"{summary(sweep)}; {len(sweep.due())} to compute"])
 
 
 def summary(sweep: Sweep) -> str:

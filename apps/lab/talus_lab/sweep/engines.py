@@ -9,10 +9,10 @@ from dataclasses import dataclass
 from typing import Any, Callable, Iterator, Mapping
 
 from talus_lab.errors import ResultError, nearest
+from talus_lab.sweep.config import QUEUES
 from talus_lab.sweep.pool import LocalPool
 
 ENGINES = ("local", "dask")
-QUEUES = {"slurm": "SLURMCluster", "pbs": "PBSCluster"}
 
 
 @dataclass(frozen=True)
@@ -73,7 +73,7 @@ def _queue(cluster: Mapping[str, Any]) -> Any:
     options = dict(cluster)
     kind, jobs = options.pop("kind", ""), options.pop("jobs", 1)
     if kind not in QUEUES:
-        raise ResultError(f"cluster.kind: is not {kind}; there are {', '.join(QUEUES)}")
+        raise ResultError(f"cluster.kind: is not {kind}{nearest(kind, QUEUES)}")
     try:
         import dask_jobqueue
     except ImportError:

@@ -6,7 +6,7 @@ import inspect
 import json
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Callable, Mapping
 
 import h5py
 import numpy as np
@@ -14,11 +14,19 @@ import numpy as np
 from talus_lab.errors import ResultError, nearest
 from talus_lab.measures import AT, MEASURES, evaluate, unit
 from talus_lab.run import Run
+from talus_lab.sweep.ranges import is_finite
 
 DEFAULT = ("verdict", "mechanism", "moving_blocks", "max_displacement")
 ALWAYS = ("verdict", "mechanism", "moving_blocks", "detached_blocks", "moving_area")  # cost nothing, and may be asked for later
 NAMED = ("history", "energy")  # measures that a config gives as `history: NAME`
 FORM = "is neither the name of a measure nor {name: COLUMN, measure: ...}, {name: COLUMN, history: ...} or {name: COLUMN, energy: ...}"
+
+# By how an option is annotated: what it must be, and how that is called
+KINDS: Mapping[str, tuple[Callable[[Any], bool], str]] = {
+    "float": (is_finite, "a number"), "int": (lambda value: isinstance(value, int), "a whole number"),
+    "str": (lambda value: isinstance(value, str), "a word"), "str | None": (lambda value: isinstance(value, str), "a word"),
+    "Sequence[float]": (lambda value: isinstance(value, list) and len(value) == 2 and all(map(is_finite, value)), "a point [x, y]"),
+}
 
 
 class MeasureError(ResultError):
@@ -62,10 +70,16 @@ def measure_of(given: Any, where: str, faults: list[str]) -> Measure | None:
 def _wrong(measure: str, options: dict[str, Any]) -> str:
     if measure not in MEASURES:
         return f"unknown measure {measure}{nearest(measure, MEASURES)}"
-    try:
-        inspect.signature(MEASURES[measure].function).bind(None, **options)
-    except TypeError as error:
-        return f"measure {measure}: {error}"
+    known = dict(list(inspect.signature(MEASURES[measure].function).parameters.items())[1:])
+    for option, value in options.items():
+        if option not in known:
+            return f"measure {measure}: unknown option {option}{nearest(option, known)}"
+        fits, words = KINDS[known[option].annotation]
+        if not fits(value):
+            return f"measure {measure}: {option} is not {words}"
+    for option, parameter in known.items():
+        if option not in options and parameter.default is inspect.Parameter.empty:
+            return f"measure {measure}: needs {option}"
     if options.get("at", "end") not in AT:
         return f"at: {options['at']}{nearest(options['at'], AT)}"
     return ""
@@ -87,10 +101,21 @@ def parts(key: str) -> tuple[str, dict[str, Any]]:
     return tuple(json.loads(key)) if key.startswith("[") else (key, {})
 
 
+def history_of(key: str) -> str:
+    """The history that a measure looks at, or nothing."""
+    name, options = parts(key)
+    return str(options["name"]) if name == "history" else ""
+
+
 def known_unit(key: str) -> str:
     """Before there is a result; empty where only a result knows it."""
     name = parts(key)[0]
     return "" if name == "history" else MEASURES[name].unit
+
+
+def said(key: str) -> str:
+    """A measure without options in words; with options its name in the config says more."""
+    return MEASURES[key].label if key in MEASURES else ""
 
 
 def _value(run: Run, key: str) -> Any:

@@ -42,7 +42,7 @@ def levels_of(parameter: Parameter, where: str) -> tuple[list, list[str]]:
         return [str(name) for name in parameter.levels], wrong
     pair = ("mean", "deviation") if given == ["mean"] else ("from", "to")
     low, high = (number(parameter.mean), number(parameter.deviation)) if given == ["mean"] else (number(parameter.from_), number(parameter.to))
-    wrong = [f"{where}.{name}: is not a number" for name, end in zip(pair, (low, high)) if not is_number(end)]
+    wrong = [f"{where}.{name}: is not a finite number" for name, end in zip(pair, (low, high)) if not is_finite(end)]
     if wrong:
         return [], wrong
     if given == ["mean"]:
@@ -54,6 +54,10 @@ def is_number(value: Any) -> bool:
     return isinstance(value, (int, float)) and not isinstance(value, bool)
 
 
+def is_finite(value: Any) -> bool:
+    return is_number(value) and math.isfinite(value)
+
+
 def _range(parameter: Parameter, low: float, high: float, where: str) -> tuple[list, list[str]]:
     step = number(parameter.step)
     if parameter.scale not in ("linear", "log"):
@@ -62,15 +66,18 @@ def _range(parameter: Parameter, low: float, high: float, where: str) -> tuple[l
         return [], [f"{where}.scale: log needs ends above 0, and count in place of step"]
     if step is not None and parameter.count:
         return [], [f"{where}: has both count and step"]
-    if step is not None and not is_number(step):
-        return [], [f"{where}.step: is not a number"]
+    if step is not None and not is_finite(step):
+        return [], [f"{where}.step: is not a finite number"]
     if is_drawn(parameter):
         return [], [] if low < high else [f"{where}: the range from {low:g} to {high:g} is empty"]
     if step is not None:
         if step == 0 or (high - low) / step < 0:
             return [], [f"{where}: the range from {low:g} to {high:g} by {step:g} is empty"]
-        count = int((high - low) / step * (1 + 1e-12) + 1e-9) + 1  # an end that is met but for rounding belongs to it
-        return ([], [f"{where}: has {count} values"]) if count > MOST else ([low + k * step if isinstance(low, int) and isinstance(step, int) else tidy(low + k * step) for k in range(count)], [])
+        count = int(min((high - low) / step * (1 + 1e-12) + 1e-9, 2 * MOST)) + 1  # an end that is met but for rounding belongs to it
+        if count > MOST:
+            return [], [f"{where}: has more than {MOST} values"]
+        whole = isinstance(low, int) and isinstance(step, int)
+        return [low + k * step if whole else tidy(low + k * step) for k in range(count)], []
     if not 1 <= parameter.count <= MOST or (parameter.count == 1 and low != high):
         return [], [f"{where}.count: is not from 2 to {MOST}"]
     shares = [k / max(1, parameter.count - 1) for k in range(parameter.count)]

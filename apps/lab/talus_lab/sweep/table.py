@@ -1,4 +1,4 @@
-"""What came of a sweep as one table: `table.csv`, `table.h5`, and `sweep.json`, which says what its columns are."""
+"""What came of a sweep as one table: `table.csv`, `table.h5`, `table.parquet` if asked for, and `sweep.json`, which says what its columns are."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ import numpy as np
 from talus_lab.sweep.case import Record
 from talus_lab.sweep.cases import Case, keys_of, levels
 from talus_lab.sweep.config import COLUMNS, REPETITION, Config
-from talus_lab.sweep.measures import known_unit
+from talus_lab.sweep.measures import known_unit, said
 from talus_lab.sweep.ranges import is_drawn, is_number
 
 UNITS = {"wall_time": "s"}
@@ -35,7 +35,7 @@ def columns_of(config: Config, cases: Sequence[Case], records: Mapping[str, Reco
     found = [records.get(case.id, {}) for case in cases]
     units = {measure.key: known_unit(measure.key) for measure in config.measures} | {key: unit for record in found for key, unit in record.get("units", {}).items()}
     parameters = [Column(p["name"], p["unit"], [case.values[p["name"]] for case in cases], p["label"]) for p in parameters_of(config)]
-    measures = [Column(measure.name, units.get(measure.key, ""), [record.get("measures", {}).get(measure.key) for record in found], measure.label)
+    measures = [Column(measure.name, units.get(measure.key, ""), [record.get("measures", {}).get(measure.key) for record in found], measure.label or said(measure.key))
                 for measure in config.measures]
     about = {"case": [case.id for case in cases], "status": [record.get("status", "missing") for record in found]}
     about |= {name: [record.get(name) for record in found] for name in COLUMNS if name not in about}
@@ -51,7 +51,7 @@ def parameters_of(config: Config) -> list[dict]:
         kind = REPETITION if name == REPETITION else "drawn" if is_drawn(parameter) else "grid"
         unit = getattr(parameter, "unit", "") or _unit(name, values)
         found.append({"name": name, "keys": keys_of(parameter), "unit": unit, "label": getattr(parameter, "label", "") or name, "kind": kind,
-                      "values": values})
+                      "values": values} | ({"scale": "log"} if getattr(parameter, "scale", "") == "log" else {}))
     return found
 
 
@@ -65,6 +65,8 @@ def write_tables(config: Config, columns: Sequence[Column]) -> None:
     _replace(config.output / "sweep.json", (json.dumps(about, indent=1, ensure_ascii=False) + "\n").encode())
     _replace(config.output / "table.csv", _csv(columns))
     _replace(config.output / "table.h5", _h5(about, columns))
+    if config.parquet:
+        _replace(config.output / "table.parquet", _parquet(about, columns))
 
 
 def _csv(columns: Sequence[Column]) -> bytes:
@@ -86,6 +88,23 @@ def _h5(about: Mapping[str, Any], columns: Sequence[Column]) -> bytes:
         for column in columns:
             data = file.create_dataset(column.name, data=_array(column))
             data.attrs["unit"], data.attrs["label"] = column.unit, column.label or column.name
+    return memory.getvalue()
+
+
+def _parquet(about: Mapping[str, Any], columns: Sequence[Column]) -> bytes:
+    """Units and labels are metadata of the fields; what there is not is null."""
+    import pyarrow
+    from pyarrow import parquet
+
+    arrays, fields = [], []
+    for column in columns:
+        numbers = column.unit != "-" and all(is_number(value) for value in column.values if value is not None)
+        arrays.append(pyarrow.array([value if value is None else float(value) if numbers else str(_plain(value)) for value in column.values],
+                                    pyarrow.float64() if numbers else pyarrow.string()))
+        fields.append(pyarrow.field(column.name, arrays[-1].type, metadata={"unit": column.unit, "label": column.label or column.name}))
+    made = pyarrow.Table.from_arrays(arrays, schema=pyarrow.schema(fields, {"sweep": json.dumps(about, ensure_ascii=False)}))
+    memory = io.BytesIO()
+    parquet.write_table(made, memory)
     return memory.getvalue()
 
 
