@@ -105,7 +105,52 @@ def test_cases_on_one_another_are_averaged_and_empty_cells_are_hatched(tmp_path)
     folder = write_sweep(tmp_path / "s", {"a": [1, 2, 1, 2], "b": [1, 1, 2, 2]}, {"d": [0.1, 0.2, 0.4, 0.5]}, status=["done", "done", "done", "diverged"],
                          units={"d": "m"})
     figure = maps.value_map(read_table(folder), "a", "b", "d", limit=0.3)
-    assert legend(figure) == ["d 300 mm", "no value"] and figure.axes[-1].get_ylabel() == "d in m"
+    assert legend(figure) == ["d = 300 mm", "no value"] and figure.axes[-1].get_ylabel() == "d in mm"
+
+
+def ticks(axis):
+    axis.figure.canvas.draw()
+    return [tick.get_text() for tick in axis.get_ticklabels()]
+
+
+def test_words_stand_along_an_axis_in_the_order_of_the_config(tmp_path):
+    folder = write_sweep(tmp_path / "s", {"rock": ["tuff", "marl", "tuff", "marl"], "friction_deg": [10.0, 10, 20, 20]},
+                         {"verdict": ["stable", "unstable"] * 2, "mechanism": ["none", "slide"] * 2, "d": [1.0, 2, 3, 4]})
+    about = json.loads((folder / "sweep.json").read_text())
+    about["parameters"][0]["values"] = ["tuff", "marl"]
+    (folder / "sweep.json").write_text(json.dumps(about))
+    table = read_table(folder)
+    assert list(table.numbers("rock")) == [0, 1, 0, 1]
+    for kind in ("modes", "map"):
+        ax = pictures.draw(table, pictures.Picture(kind)).axes[0]
+        assert ax.get_xlabel() == "friction" and ticks(ax.yaxis) == ["tuff", "marl"] and ticks(ax.xaxis) == ["10", "20"]
+    assert list(pictures.fitting(table)) == ["modes", "map"]
+
+
+def test_values_in_equal_ratios_have_cells_of_equal_width_and_units_get_a_prefix(tmp_path):
+    stiffness = [1e8, 1e9, 1e10]
+    folder = write_sweep(tmp_path / "s", {"k": stiffness * 2, "c": [1e6] * 3 + [2e6] * 3}, {"force": [1e6, 2e6, 3e6, 4e6, 5e6, 6e6]},
+                         units={"k": "Pa/m", "c": "Pa", "force": "N"})
+    figure = maps.value_map(read_table(folder), "k", "c", "force")
+    ax, bar = figure.axes
+    assert ax.get_xscale() == "log" and ax.get_xlim() == pytest.approx((1e8 / 10**0.5, 1e10 * 10**0.5))
+    assert (ax.get_xlabel(), ax.get_ylabel(), bar.get_ylabel()) == ("k in GPa/m", "c in MPa", "force in MN")
+    assert "1" in ticks(ax.xaxis) and ticks(ax.yaxis) == ["1", "2"] and all(float(text) < 10 for text in ticks(bar.yaxis))
+
+
+def test_rounding_takes_no_colours_from_what_moves_and_what_is_no_number_has_no_value(tmp_path):
+    folder = write_sweep(tmp_path / "s", {"a": [1.0, 2, 1, 2], "b": [1.0, 1, 2, 2]}, {"d": [1e-12, 1.0, 0.01, float("inf")]}, units={"d": "m"})
+    figure = maps.value_map(read_table(folder), "a", "b", "d")
+    assert legend(figure) == ["no value"] and figure.axes[-1].get_ylim() == pytest.approx((1e-5, 1.0))
+
+
+def test_without_a_decided_case_there_is_no_probability_but_a_diagram(tmp_path):
+    folder = write_sweep(tmp_path / "s", {"a": [1.0, 2, 1, 2], "b": [1.0, 1, 2, 2], "repetition": [1, 1, 2, 2]}, {"verdict": ["undecided"] * 4},
+                         kinds={"repetition": "repetition"})
+    table = read_table(folder)
+    with pytest.raises(talus_lab.ResultError, match="no case is decided"):
+        maps.probability(table, "a", "b")
+    assert list(pictures.fitting(table)) == ["modes"]
 
 
 def test_rank_correlation_is_spearmans():

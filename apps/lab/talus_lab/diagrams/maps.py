@@ -18,14 +18,15 @@ from matplotlib.patheffects import withStroke
 from matplotlib.tri import Triangulation
 
 from talus_lab.diagrams.boundaries import Curve
-from talus_lab.diagrams.panels import axis_labels, borders, cells, check, draw_curves, grid, panels, value_label
+from talus_lab.diagrams.panels import axis_labels, borders, cells, check, draw_curves, grid, number_axis, panels, scale, value_label
 from talus_lab.diagrams.table import Table
 from talus_lab.errors import ResultError
 from talus_lab.plot import finish
 from talus_lab.style import CM, DASHES, DPI, MARKS, NAME_COLORS, STYLE, WIDTH_CM
-from talus_lab.units import quantity
+from talus_lab.units import axis_label, quantity
 
 COLORS = "cividis"
+DECADES = 1e-5  # of the largest value: smaller ones have the colour of this, for 1e-9 m is rounding and would take the colours of all that is seen
 WIDE = 1000.0  # largest over smallest value from which colours go by the logarithm
 WRITTEN = 12  # cells along an axis: in so many there is room for a number
 NORMAL = 1.96  # of a confidence of 95 %
@@ -38,8 +39,8 @@ def value_map(table: Table, x: str, y: str, value: str, panel: str | None = None
     unit of the column."""
     check(table, x=x, y=y, panel=panel)
     numbers = table.numbers(value)
-    said = f"{table.labels.get(value, value)} {quantity(limit, table.units.get(value, '1'))}" if limit is not None else ""
-    return _map(table, x, y, panel, numbers, table.label(value), _norm(numbers, table, value), limit, said, curves, width_cm)
+    said = f"{table.labels.get(value, value)} = {quantity(limit, table.units.get(value, '1'))}" if limit is not None else ""
+    return _map(table, x, y, panel, numbers, table.labels.get(value, value), table.units.get(value, ""), _norm(numbers, table, value), limit, said, curves, width_cm)
 
 
 def probability(table: Table, x: str, y: str | None = None, panel: str | None = None, value: str | None = None, limit: float | None = None,
@@ -48,9 +49,11 @@ def probability(table: Table, x: str, y: str | None = None, panel: str | None = 
     a half; or, without y, a curve over x with its 95 % confidence band."""
     check(table, x=x, y=y, panel=panel)
     event = failing(table, value, limit)
+    if np.isnan(event).all():
+        raise ResultError(f"{table.path}: no case is decided" if not value else f"{table.path}: no case has {value} yet")
     words = f"share with {table.labels.get(value, value)} above {quantity(limit, table.units.get(value, '1'))}" if value else "share that fails"
     if y:
-        return _map(table, x, y, panel, event, words, Normalize(0, 1), 0.5, "a half fails", curves, width_cm, shares=True)
+        return _map(table, x, y, panel, event, words, "", Normalize(0, 1), 0.5, "a half fails", curves, width_cm, shares=True)
     return _curve(table, x, panel, event, words, width_cm)
 
 
@@ -79,11 +82,11 @@ def _norm(numbers: np.ndarray, table: Table, value: str) -> Normalize:
         raise ResultError(f"{table.path}: no case has {value} yet")
     above = known[known > 0]
     if len(above) and known.min() >= 0 and above.max() > WIDE * above.min():
-        return LogNorm(above.min(), above.max(), clip=True)
+        return LogNorm(max(above.min(), DECADES * above.max()), above.max(), clip=True)
     return Normalize(known.min(), known.max() if known.max() > known.min() else known.min() + 1)
 
 
-def _map(table: Table, x: str, y: str, panel: str | None, numbers: np.ndarray, label: str, norm: Normalize, limit: float | None, said: str,
+def _map(table: Table, x: str, y: str, panel: str | None, numbers: np.ndarray, label: str, unit: str, norm: Normalize, limit: float | None, said: str,
          curves: Sequence[Curve], width_cm: float, shares: bool = False) -> Figure:
     lattice = grid(table, x, y)
     table = Table(table.path, table.title, {**table.columns, "": numbers}, table.parameters, table.measures, table.units, table.labels)
@@ -101,7 +104,9 @@ def _map(table: Table, x: str, y: str, panel: str | None, numbers: np.ndarray, l
                 _scattered(ax, at, rows.columns[""], norm, limit)
                 limits = (ax.get_xlim(), ax.get_ylim())
             theory = draw_curves(ax, curves, x, y, fixed, limits)
-        bar = figure.colorbar(ScalarMappable(norm, COLORS), ax=axes, shrink=0.9, aspect=26, pad=0.015, use_gridspec=False)
+        bar = figure.colorbar(ScalarMappable(norm, COLORS), ax=axes, shrink=0.9, aspect=26, pad=0.015, use_gridspec=False,
+                              extend="min" if isinstance(norm, LogNorm) and np.nanmin(numbers) < norm.vmin else "neither")
+        label = number_axis(bar.ax.yaxis, numbers, label, unit) if bar.ax.yaxis.get_scale() != "log" else axis_label(label, unit)
         bar.set_label("\n".join(textwrap.wrap(label, int(10 * figure.get_figheight()))))
         axis_labels(figure, table, x, y)
         line = [Line2D([], [], color="#d55e00", linewidth=1.6, label=said)] if limit is not None else []
@@ -166,7 +171,7 @@ def _curve(table: Table, x: str, panel: str | None, event: np.ndarray, label: st
             ax.fill_between(at, *wilson(failed, count), color=color, alpha=0.15, linewidth=0)
             ax.plot(at, failed / count, color=color, markersize=4, label="" if value is None else value_label(table, panel, value),
                     linestyle=DASHES[(k + k // 7) % len(DASHES)], marker=MARKS[(k + k // 7) % len(MARKS)])
-        ax.set(xlabel=table.label(x), ylabel=label, ylim=(-0.02, 1.02), yticks=np.linspace(0, 1, 6))
+        ax.set(xlabel=scale(ax, "x", table, x, False), ylabel=label, ylim=(-0.02, 1.02), yticks=np.linspace(0, 1, 6))
         ax.grid(True, color="#e0e0e0", linewidth=0.5)
         ax.spines[["top", "right"]].set_visible(False)
         finish(figure, table.title, ax.get_lines() if panel else [])

@@ -8,17 +8,21 @@ from typing import Any, Iterator, Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.path import Path
 from matplotlib.patheffects import withStroke
+from matplotlib.ticker import FuncFormatter, NullFormatter
 
 from talus_lab.diagrams.boundaries import Curve
 from talus_lab.diagrams.table import Table
 from talus_lab.errors import ResultError, nearest
 from talus_lab.style import CM, DPI
-from talus_lab.units import SPELT
+from talus_lab.units import SPELT, axis_label, prefix
 
+FEW = 6  # values along an axis: each gets its tick
+WORD = 18  # letters of a line of a word at an axis
 ACROSS = 3  # panels side by side, at most: a fourth would be 2 cm wide in print
 
 
@@ -28,8 +32,6 @@ def check(table: Table, **parameters: str | None) -> None:
     for role, name in given.items():
         if name not in table.parameters:
             raise ResultError(f"{table.path}: {role}: no parameter {name}{nearest(name, table.parameters)}")
-        if table.columns[name].dtype.kind not in "fiub" and role != "panel":
-            raise ResultError(f"{table.path}: {role}: the values of {name} are words; it can be a panel")
     if len(set(given.values())) < len(given):
         raise ResultError(f"{table.path}: {', '.join(given)} are not all different")
     if not len(table):
@@ -58,14 +60,49 @@ def panels(table: Table, panel: str | None, width_cm: float, bar: bool = False) 
 
 
 def axis_labels(figure: Figure, table: Table, x: str, y: str) -> None:
-    """At the outer sides of all panels."""
+    """At the outer sides of all panels, and what the values along them look like."""
     axes = [ax for ax in figure.axes if ax.get_subplotspec() is not None]
     across = max(ax.get_subplotspec().colspan.stop for ax in axes)
+    label_x, label_y = (scale(axes[0], which, table, name) for which, name in (("x", x), ("y", y)))
     for ax in axes:
         if ax.xaxis.get_tick_params()["labelbottom"]:
-            ax.set_xlabel("\n".join(textwrap.wrap(table.label(x), int(12 * figure.get_figwidth() / across))))
+            ax.set_xlabel("\n".join(textwrap.wrap(label_x, int(12 * figure.get_figwidth() / across))))
         if ax.get_subplotspec().is_first_col():
-            ax.set_ylabel("\n".join(textwrap.wrap(table.label(y), int(10 * figure.get_figheight()))))
+            ax.set_ylabel("\n".join(textwrap.wrap(label_y, int(10 * figure.get_figheight()))))
+
+
+def scale(ax: Axes, which: str, table: Table, name: str, cells: bool = True) -> str:
+    """Ticks of an axis for the values of a parameter: words, equal ratios, few values, numbers with a prefix to their unit. Returns its
+    label. cells: the axis has those of a grid, or anything else with limits above 0 where it should be logarithmic."""
+    axis = getattr(ax, f"{which}axis")
+    numbers, words = table.numbers(name), table.words(name)
+    if words:
+        longest = max(map(len, words))
+        room = 72 * (ax.get_figure().get_figwidth() - 1) / ax.get_gridspec().ncols / len(words) if which == "x" else 300.0  # points
+        upright = which == "x" and min(longest, WORD) * 5 > room
+        axis.set_ticks(range(len(words)), ["\n".join(textwrap.wrap(word, WORD)) for word in words], rotation=90 if upright else 0)
+        return table.label(name)
+    values = np.unique(numbers)
+    parameter = table.parameters[name]
+    if parameter.log and not cells if parameter.kind == "drawn" else in_ratios(values):
+        getattr(ax, f"set_{which}scale")("log")
+    elif len(values) <= FEW:
+        axis.set_ticks(values)
+    return number_axis(axis, values, table.labels.get(name, name), table.units.get(name, ""))
+
+
+def number_axis(axis: Axis, values: np.ndarray, label: str, unit: str) -> str:
+    """Numbers with a prefix to their unit, in full. Returns the label."""
+    factor, unit = prefix(float(np.nanmax(np.abs(values), initial=0.0)), unit)
+    if axis.get_scale() != "log" or factor != 1:
+        axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value * factor:.6g}".replace("e+", "e")))
+        axis.set_minor_formatter(NullFormatter())
+    return axis_label(label, unit)
+
+
+def in_ratios(values: np.ndarray) -> bool:
+    """Values above 0 over two decades or more, which on a linear axis would lie on one another."""
+    return len(values) > 1 and values.min() > 0 and values.max() >= 100 * values.min()
 
 
 def value_label(table: Table, name: str, value: Any) -> str:
@@ -79,13 +116,15 @@ def grid(table: Table, x: str, y: str) -> tuple[np.ndarray, np.ndarray] | None:
     """Values of x and of y in their order, or None if the cases do not lie on a grid."""
     if "drawn" in (table.parameters[x].kind, table.parameters[y].kind):
         return None
-    return np.unique(table.columns[x]), np.unique(table.columns[y])
+    return np.unique(table.numbers(x)), np.unique(table.numbers(y))
 
 
 def borders(values: np.ndarray) -> np.ndarray:
     """Between the values, and as far beyond the first and the last."""
     if len(values) == 1:
-        return values[0] + np.array([-0.5, 0.5])
+        return values[0] + np.array([-0.5, 0.5]) * (abs(values[0]) or 1.0)
+    if in_ratios(values):
+        return np.exp(borders(np.log(values)))
     middle = (values[1:] + values[:-1]) / 2
     return np.concatenate([[2 * values[0] - middle[0]], middle, [2 * values[-1] - middle[-1]]])
 

@@ -3,19 +3,22 @@
 from __future__ import annotations
 
 import math
+import textwrap
 
 import matplotlib
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from talus_lab.diagrams.panels import check
+from talus_lab.diagrams.panels import check, number_axis, scale
 from talus_lab.diagrams.table import Table
 from talus_lab.errors import ResultError, nearest
 from talus_lab.plot import finish
 from talus_lab.style import CM, DPI, MODES, STYLE, WIDTH_CM
 
 WAYS = ("rank", "range")
+SMALL = (".", "$?$")  # marks that are small for their size
+LINE = 28  # letters of a line beside a bar
 FEW = 4  # cases: of fewer a rank correlation says nothing
 
 
@@ -40,12 +43,12 @@ def tornado(table: Table, value: str, by: str = "rank", width_cm: float = WIDTH_
             positive = high >= 0 or by == "range"
             ax.barh(k, high - low, left=low, height=0.66, color="#0072b2" if positive else "#e69f00", edgecolor="#404040", linewidth=0.5,
                     hatch=None if positive else "////")
-        ax.set_yticks(range(len(order)), [table.labels.get(name, name) if by == "rank" else table.label(name) for name in order])
+        ax.set_yticks(range(len(order)), ["\n".join(textwrap.wrap(table.labels.get(name, name) if by == "rank" else table.label(name), LINE)) for name in order])
         if by == "rank":
             ax.axvline(0, color="#404040", linewidth=0.6)
             ax.set(xlim=(-1.02, 1.02), xlabel=f"rank correlation with {table.labels.get(value, value)}")
         else:
-            ax.set_xlabel(table.label(value))
+            ax.set_xlabel(number_axis(ax.xaxis, numbers, table.labels.get(value, value), table.units.get(value, "")))
         ax.grid(True, axis="x", color="#e0e0e0", linewidth=0.5)
         ax.set_axisbelow(True)
         ax.spines[["top", "right"]].set_visible(False)
@@ -55,7 +58,7 @@ def tornado(table: Table, value: str, by: str = "rank", width_cm: float = WIDTH_
 
 def scatter(table: Table, value: str, width_cm: float = WIDTH_CM) -> Figure:
     """The number over each parameter in turn; marks say the mode of failure if it was measured."""
-    names, numbers = _numeric(table), table.numbers(value)
+    names, numbers = _varied(table), table.numbers(value)
     told = {"verdict", "mechanism"} & set(table.columns)
     mode = table.mode if told else np.full(len(table), "still", dtype=object)
     there = [name for name in MODES if name in set(mode[~np.isnan(numbers)])]
@@ -67,17 +70,19 @@ def scatter(table: Table, value: str, width_cm: float = WIDTH_CM) -> Figure:
         for ax, name in zip(axes.flat, names):
             for kind in there:
                 rows, look = mode == kind, MODES[kind]
-                ax.plot(table.numbers(name)[rows], numbers[rows], linestyle="none", marker=look.mark if told else "o", markersize=3,
+                ax.plot(table.numbers(name)[rows], numbers[rows], linestyle="none", marker=look.mark if told else "o", markersize=5 if told and look.mark in SMALL else 3,
                         markerfacecolor=look.color if told else "#0072b2", markeredgecolor="#404040", markeredgewidth=0.3)
-            ax.set_xlabel(table.label(name), fontsize=8)
             ax.spines[["top", "right"]].set_visible(False)
-            ax.locator_params(axis="x", nbins=4)
+            if not table.words(name):
+                ax.locator_params(axis="x", nbins=4)
+            ax.set_xlabel("\n".join(textwrap.wrap(scale(ax, "x", table, name, False), int(15 * (width_cm * CM - 0.8) / across))), fontsize=8)
         known = numbers[~np.isnan(numbers)]
         if len(known) and known.min() > 0 and known.max() > 1000 * known.min():
             axes[0, 0].set_yscale("log")
+        label = number_axis(axes[0, 0].yaxis, numbers, table.labels.get(value, value), table.units.get(value, ""))
         for ax in list(axes.flat)[len(names):]:
             ax.remove()
-        figure.supylabel(table.label(value), fontsize=9)
+        figure.supylabel(label, fontsize=9)
         finish(figure, table.title, [Line2D([], [], linestyle="none", marker=MODES[kind].mark, markersize=5, markerfacecolor=MODES[kind].color,
                                             markeredgecolor="#404040", markeredgewidth=0.5, label=kind) for kind in there] if told else [])
         return figure
@@ -108,9 +113,15 @@ def alone(table: Table, name: str, names: list[str], numbers: np.ndarray) -> tup
     return (float(numbers[rows].min()), float(numbers[rows].max())) if rows.sum() > 1 else None
 
 
-def _numeric(table: Table) -> list[str]:
+def _varied(table: Table) -> list[str]:
     check(table)
-    names = [name for name in table.varied() if table.columns[name].dtype.kind in "fiub"]
-    if not names:
+    if not table.varied():
         raise ResultError(f"{table.path}: no parameter varies")
+    return table.varied()
+
+
+def _numeric(table: Table) -> list[str]:
+    names = [name for name in _varied(table) if not table.words(name)]
+    if not names:
+        raise ResultError(f"{table.path}: the values of all parameters are words; scatter can draw them")
     return names

@@ -28,6 +28,8 @@ class Parameter:
     unit: str
     label: str
     kind: str = "grid"
+    log: bool = False  # drawn so that equal ratios are equally likely
+    order: tuple[str, ...] = ()  # of values that are words, as the config has them
 
 
 @dataclass(frozen=True)
@@ -50,11 +52,20 @@ class Table:
         return self.columns[name]
 
     def numbers(self, name: str) -> np.ndarray:
-        """[cases]; nan for cases that are not done. Raises ResultError if the column holds words."""
+        """[cases]; nan for cases that are not done, and where a number is not finite. Of a parameter whose values are words: their places in `words`.
+        Raises ResultError if a measure holds words."""
         column = self.column(name)
+        if name in self.parameters and column.dtype.kind not in "fiub":
+            return np.array([self.words(name).index(value) for value in column.tolist()], float)
         if column.dtype.kind not in "fiub":
             raise ResultError(f"{self.path}: {name} holds words, not numbers; numbers are in {', '.join(self.numeric)}")
-        return column.astype(float) if name in self.parameters else np.where(self.done, column.astype(float), np.nan)
+        return column.astype(float) if name in self.parameters else np.where(self.done & np.isfinite(column), column.astype(float), np.nan)
+
+    def words(self, name: str) -> list[str]:
+        """Values of a parameter that are words, in the order of the config; empty if they are numbers."""
+        there = set(self.columns[name].tolist()) if self.columns[name].dtype.kind not in "fiub" else set()
+        order = self.parameters[name].order
+        return sorted(there, key=lambda value: (order.index(value) if value in order else len(order), value))
 
     @property
     def numeric(self) -> list[str]:
@@ -114,7 +125,8 @@ def read_table(folder: str | Path) -> Table:
     try:
         about = json.loads((folder / "sweep.json").read_text(encoding="utf-8"))
         columns = _from_h5(folder / "table.h5") if (folder / "table.h5").exists() else _from_csv(folder / "table.csv")
-        parameters = {p["name"]: Parameter(p["name"], p.get("unit", ""), _words(p), p.get("kind", "grid"))
+        parameters = {p["name"]: Parameter(p["name"], p.get("unit", ""), _words(p), p.get("kind", "grid"), p.get("scale") == "log",
+                                           tuple(value if isinstance(value, str) else json.dumps(value) for value in p.get("values", ())))
                       for p in about["parameters"]}
         measures = {m["name"]: m for m in about["measures"]}
         lost = [name for name in (*parameters, *measures) if name not in columns]
