@@ -13,6 +13,7 @@ from talus_lab.stress import block_stress, contact_force, principal
 from talus_lab.units import quantity
 
 PRESSED, PULLED = "#a50026", "#0072b2"
+MOST = 98  # per cent of the arms that are as long as the stress is large; with 100 one nipped block shrinks all others to dots
 
 
 def largest_force(run: Run, frame: int) -> float:
@@ -47,15 +48,15 @@ def draw_forces(ax: Axes, run: Run, geometry: Geometry, largest: float | None = 
 
 
 def largest_stress(run: Run, frame: int) -> float:
-    """Pa, of the principal stresses of the blocks of a frame, but for the largest 0.1 %."""
+    """Pa, of the principal stresses of the blocks of a frame, but for the largest few, as with colours."""
     size = np.abs(np.concatenate(principal(block_stress(run, frame))[:2]))
-    return float(np.percentile(size[~np.isnan(size)], 99.9)) if not np.isnan(size).all() else 0.0
+    return float(np.percentile(size[~np.isnan(size)], MOST, method="higher")) if not np.isnan(size).all() else 0.0
 
 
 def draw_stress(ax: Axes, run: Run, geometry: Geometry, largest: float | None = None) -> list[Line2D]:
     """Principal stresses of each block as a cross at its centroid, arms as long as the stress is large, tension in another
-    colour. largest: Pa, that of the longest arm; default: that of this frame, but for a tenth of a per cent of the blocks, so that one
-    that is nipped between two corners does not shrink all others."""
+    colour. largest: Pa, that of the longest arm; default: that of this frame, but for a few of the arms, so that blocks
+    that are nipped between two corners do not shrink all others."""
     stress = block_stress(run, geometry.frame)
     known = np.flatnonzero(~np.isnan(stress[:, 0, 0]))
     major, minor, angle = principal(stress[known])
@@ -73,6 +74,7 @@ def draw_stress(ax: Axes, run: Run, geometry: Geometry, largest: float | None = 
             arms = np.stack([middle - half, middle + half], axis=1)[rows]
             add(ax, LineCollection(arms, colors="white", linewidths=2.5 * wide, alpha=0.8, zorder=4.9))  # seen on dark blocks too
             add(ax, LineCollection(arms, colors=color, linewidths=wide, zorder=5))
-            handles.append(Line2D([], [], color=color, linewidth=1.4,
-                                  label=f"{label}, largest {quantity(float(np.abs(size[rows]).max()), 'Pa')}"))
+            most = float(np.abs(size[rows]).max())
+            words = f"longest {quantity(longest, 'Pa')} and more" if most > 1.001 * longest else f"largest {quantity(most, 'Pa')}"
+            handles.append(Line2D([], [], color=color, linewidth=1.4, label=f"{label}, {words}"))
     return handles

@@ -10,7 +10,7 @@ from matplotlib.collections import LineCollection, PathCollection
 
 import talus_lab
 from conftest import ORIGIN, tell
-from talus_lab import colors, curves, layers, plot, stress, units
+from talus_lab import colors, curves, forces, layers, plot, stress, units
 from talus_lab.cli import main
 from talus_lab.silhouette import silhouette
 
@@ -136,6 +136,18 @@ def test_a_block_pressed_from_both_sides_has_that_stress():
     # 3 m wide, 2 m high: 40 N on the 2 m high sides press with 20 Pa. 30 N to the right on the 3 m wide base, whose outward normal n is
     # (0, -1): t = -sigma n = 10 Pa, sigma_xy = 10 Pa. Nothing balances the moment, so the symmetric part has half of it.
     assert found[0] == pytest.approx(np.array([[20, 5], [5, 0]])) and np.isnan(found[1]).all()
+
+
+def test_one_nipped_block_among_many_does_not_shrink_the_crosses_of_the_others(result, monkeypatch):
+    pressed = np.zeros((3, 2, 2))
+    pressed[:, 0, 0], pressed[:, 1, 1] = 1e3, 2e3
+    many = np.repeat(pressed, 40, axis=0)
+    many[7] *= 1e6
+    monkeypatch.setattr("talus_lab.forces.block_stress", lambda run, frame: many)
+    assert forces.largest_stress(None, -1) == pytest.approx(2e3)
+    pressed[1] *= 1e6
+    monkeypatch.setattr("talus_lab.forces.block_stress", lambda run, frame: pressed)
+    assert forces.largest_stress(None, -1) == pytest.approx(2e9)  # of a few blocks the largest counts
 
 
 def test_principal_stresses_of_pure_shear_lie_at_45_degrees():
