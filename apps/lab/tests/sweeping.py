@@ -8,7 +8,10 @@ import multiprocessing
 import os
 import sys
 import time
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
 from pathlib import Path
+from typing import Iterator, Mapping
 
 import pytest
 import yaml
@@ -16,6 +19,7 @@ import yaml
 from talus_lab.cli import main
 from talus_lab.errors import ResultError
 from talus_lab.program import find_talus
+from talus_lab.sweep.engines import Engine, engine_of
 
 SCENARIO = """\
 title: Block on an incline
@@ -51,8 +55,19 @@ def config(folder: Path, **changes: object) -> Path:
     return path
 
 
-def stand_in(folder: Path, monkeypatch: pytest.MonkeyPatch, always: str = "") -> Path:
-    """Puts a program that notes its runs in the place of talus."""
+@contextmanager
+def in_this_process(name: str, workers: int, scheduler: str = "", cluster: Mapping = {}) -> Iterator[Engine]:
+    """In the place of local workers, one case at a time: a worker takes longer to start than many cases do."""
+    if name != "local" or scheduler:
+        with engine_of(name, workers, scheduler, cluster) as engine:
+            yield engine
+    else:
+        with ThreadPoolExecutor(1) as pool:
+            yield Engine(pool, lambda: 1)
+
+
+def stand_in(folder: Path, monkeypatch: pytest.MonkeyPatch, always: str = "", workers: bool = True) -> Path:
+    """Puts a program that notes its runs in the place of talus. workers: cases are computed by processes of their own, as ever."""
     try:
         talus = find_talus()
     except ResultError as error:
@@ -65,6 +80,8 @@ def stand_in(folder: Path, monkeypatch: pytest.MonkeyPatch, always: str = "") ->
     program.chmod(0o755)
     monkeypatch.setenv("TALUS", str(program))
     monkeypatch.setattr("talus_lab.sweep.cores", lambda: 1)  # a worker takes longer to start than a case does
+    if not workers:
+        monkeypatch.setattr("talus_lab.sweep.engine_of", in_this_process)
     return here
 
 

@@ -26,7 +26,7 @@ def changed(name: str, folder: Path, parameters: dict) -> Path:
 
 
 def test_a_block_fails_on_either_side_of_a_boundary_as_theory_says(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    stand_in(tmp_path, monkeypatch)
+    stand_in(tmp_path, monkeypatch, workers=False)
     sweep.sweep(changed("single_block_boundaries.yaml", tmp_path, {"along_deg": {"values": [8.5, 36.5]}}))
     rows = table(tmp_path)
     assert len(rows) == 3 * 2 + 3 * 3 * 2
@@ -36,7 +36,7 @@ def test_a_block_fails_on_either_side_of_a_boundary_as_theory_says(tmp_path: Pat
 
 
 def test_the_points_of_the_verification_have_their_modes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    stand_in(tmp_path, monkeypatch)
+    stand_in(tmp_path, monkeypatch, workers=False)
     points = {(20, 30, 0.5): "none", (20, 15, 0.5): "slide", (30, 40, 0.3): "topple", (30, 25, 0.5): "slide", (30, 28, 0.5): "topple", (40, 20, 2): "slide",
               (20, 40, 0.4): "none", (40, 23, 0.36397): "slide and topple"}
     names = ("slope_deg", "friction_deg", "ratio")

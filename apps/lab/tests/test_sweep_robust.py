@@ -135,13 +135,13 @@ def test_of_many_who_take_over_one_lock_one_succeeds(tmp_path):
 # Cases that fail
 def test_cases_that_crash_hang_diverge_or_are_refused_cost_nothing_but_themselves(tmp_path, monkeypatch, capsys):
     here = stand_in(tmp_path, monkeypatch, 'case "$*" in *density=2001*) kill -SEGV $$;; *density=2002*) sleep 60;; *density=2003*) exit 3;; esac')
-    path = many(tmp_path, 6, limit_s=1.5, where=["density != 2005"])
+    path = many(tmp_path, 6, limit_s=4, where=["density != 2005"])
     assert main(["sweep", str(path), "--workers", "2"]) == 1
     said = capsys.readouterr()
     rows = {row["density"]: row for row in table(tmp_path)}
     assert {name: row["status"] for name, row in rows.items()} == {"2001": "crashed", "2002": "timed out", "2003": "diverged", "2004": "done", "2006": "done"}
     assert rows["2002"]["max_displacement"] == "" and status(tmp_path, rows["2001"]["case"])["said"] == "SIGSEGV"
-    assert f"case {rows['2002']['case']}: timed out: takes longer than 1.5 s; see " in said.err and "log.txt" in said.err
+    assert f"case {rows['2002']['case']}: timed out: takes longer than 4 s; see " in said.err and "log.txt" in said.err
     assert "5 cases: 2 done, 1 crashed" in said.out or "5 cases: 2 done" in said.out
     assert clean(tmp_path)
     (here / "always").write_text("\n")
@@ -187,7 +187,7 @@ def trial(folder: Path, here: Path, chance: random.Random, count: int = 24) -> d
     first.end()
     wait_until(lambda: not any(Path(f"/proc/{process}").exists() for process in family))
     before, runs_before = done(folder), Counter(runs(here))
-    code, out = Driver(path, "--workers", "2").end()
+    code, out = Driver(path, "--workers", "1").end()
     assert code == 0, out
     after = Counter(runs(here))
     return {"finished before": len(before), "of them run again": sum(after[case] != runs_before[case] for case in before),
@@ -209,7 +209,7 @@ def test_all_is_done_and_nothing_twice_when_workers_and_drivers_are_killed(tmp_p
 def test_two_drivers_of_one_folder_share_the_cases(tmp_path, monkeypatch):
     here = stand_in(tmp_path, monkeypatch, "sleep 0.05")
     path = many(tmp_path, 16)
-    both = [Driver(path, "--workers", "2") for _ in range(2)]
+    both = [Driver(path, "--workers", "1") for _ in range(2)]
     for one in both:
         code, out = one.end()
         assert code == 0 and "16 cases: 16 done" in out, out
@@ -254,7 +254,7 @@ def test_a_full_disk_leaves_nothing_half_written_and_the_next_call_completes(tmp
     stand_in(tmp_path, monkeypatch)
     path = many(tmp_path, 8, output="disk/out", keep="results")  # half a megabyte each
     (tmp_path / "disk").mkdir()
-    call = f"{sys.executable} -m talus_lab.cli sweep {path} --workers 2"
+    call = f"{sys.executable} -m talus_lab.cli sweep {path} --workers 1"
     look = "find disk/out/cases -name status.json | wc -l; find disk -name '*part*' -o -name 'lock.*' -o -name 'owner.*' | wc -l"
     script = f"mount -t tmpfs -o size=1700k talus disk || exit 77; {call}; echo code $?; {look}; mount -o remount,size=20M disk; {call}; echo code $?; {look}"
     environment = os.environ | {"PYTHONPATH": os.pathsep.join(word for word in sys.path if word)}
