@@ -21,7 +21,7 @@ def main(arguments: list[str] | None = None) -> int:
         print(f"talus-lab: {error}", file=sys.stderr)
         return BAD_INPUT
     except OSError as error:
-        print(f"talus-lab: {f'{error.filename}: {error.strerror}' if error.filename else error}", file=sys.stderr)
+        print(f"talus-lab: {f'{error.filename}: {error.strerror}' if error.filename else error.strerror or error}", file=sys.stderr)
         return BAD_INPUT
     except KeyboardInterrupt:
         print("talus-lab: interrupted", file=sys.stderr)

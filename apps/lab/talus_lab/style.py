@@ -58,10 +58,12 @@ def check_format(path: Path) -> None:
 
 
 def save(figure: Figure, path: Path, dpi: int = DPI) -> None:
-    """The whole picture, or what was there before."""
+    """The whole picture, or what was there before. Raises ResultError if it cannot be written."""
     beside = path.with_name(f".{path.stem}.part{path.suffix}")
     try:
         figure.savefig(beside, dpi=dpi)
         beside.replace(path)
+    except OSError as error:
+        raise ResultError(f"{path}: {error.strerror}") from None
     finally:
         beside.unlink(missing_ok=True)

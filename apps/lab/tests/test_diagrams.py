@@ -204,6 +204,10 @@ def test_the_config_of_the_sweep_is_used_if_it_lists_pictures_and_nothing_else_i
     for options, names in (([], ["most.png"]), (["--kind", "scatter"], ["scatter.png"])):
         assert main(["sweep-plot", str(blocks), "--dpi", "60", *options]) == 0
         assert [Path(line).name for line in capsys.readouterr().out.split()] == names
+    listed = f"scenario: {__file__}\noutput: blocks\nparameters: {{}}\npictures: {{whole: {{kind: modes, panel: ratio}}}}"
+    config.write_text(listed)
+    assert main(["sweep-plot", str(config), "--dpi", "60"]) == 0
+    assert Path(capsys.readouterr().out.strip()) == blocks / "whole.png"
     config.write_text("title: a")
     assert main(["sweep-plot", str(blocks), "--dpi", "60"]) == 0
     assert [Path(line).name for line in capsys.readouterr().out.split()] == ["modes.png", "map.png"]

@@ -230,6 +230,15 @@ def test_blocks_that_are_nowhere_and_folders_are_told(result, tmp_path, capsys):
         assert complaint in error and len(error.splitlines()) == 1
 
 
+def test_a_picture_that_cannot_be_written_is_told_by_its_name_and_leaves_nothing(result, tmp_path, monkeypatch, capsys):
+    def full(*_, **__):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("matplotlib.figure.Figure.savefig", full)
+    assert main(["plot", str(result), "-o", str(tmp_path / "x.png")]) == 2
+    assert capsys.readouterr().err == f"talus-lab: {tmp_path / 'x.png'}: No space left on device\n" and not list(tmp_path.glob("*x*"))
+
+
 def test_faults_of_the_user_are_one_line_and_code_2(result, tmp_path, capsys):
     assert main(["plot", str(tmp_path / "nothing.h5")]) == 2
     assert main(["plot", str(result), "--frame", "7"]) == 2

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 def add(commands: argparse._SubParsersAction) -> None:
     p = commands.add_parser("sweep-plot", help="draw what came of a sweep: modes of failure, maps, probabilities, what matters most")
-    p.add_argument("folder", type=Path, metavar="FOLDER", help="the output of `talus-lab sweep`")
+    p.add_argument("folder", type=Path, metavar="FOLDER|CONFIG.yaml", help="the output of `talus-lab sweep`, or its config")
     p.add_argument("-o", "--output", type=Path, metavar="PATH", help="picture, .png, .svg or .pdf, or a folder for several (default: FOLDER)")
     p.add_argument("--config", type=Path, metavar="CONFIG.yaml",
                    help="draw what it lists under `pictures`, see docs/python.md (default: the config of the sweep, if it lists any and no other option "
@@ -41,8 +41,9 @@ def sweep_plot_command(options: argparse.Namespace) -> int:
     from talus_lab.diagrams.table import read_table
 
     check_size(options)
-    table = read_table(options.folder)
-    config = options.config or (table.config if not _says_what(options) else None)
+    given = options.folder if options.folder.suffix.lower() in (".yaml", ".yml") else None
+    table = read_table(_output(given) if given else options.folder)
+    config = options.config or (given or table.config if not _says_what(options) else None)
     pictures = read_pictures(config) if config and (options.config or lists_pictures(config)) else _asked(options, table)
     files = _files(options, table.path, list(pictures))
     for path in files:
@@ -51,6 +52,12 @@ def sweep_plot_command(options: argparse.Namespace) -> int:
         style.save(draw(table, picture), path, options.dpi or style.DPI)
         print(path)
     return 0
+
+
+def _output(config: Path) -> Path:
+    from talus_lab.sweep import read_config
+
+    return read_config(config).output
 
 
 def _says_what(options: argparse.Namespace) -> bool:
