@@ -133,6 +133,14 @@ void print_step(const Simulation& simulation) {
         if (stable.block >= 0)
             std::printf("               governed by %s, %s\n", block_and_place(simulation.model(), stable.block).c_str(),
                         number(simulation.model().blocks.area[stable.block], "m2").c_str());
+        const std::string substeps = substeps_in_words(simulation);
+        const double gain = simulation.scenario().run.substeps == 1 ? simulation.gain_of_substeps() : 1.0;
+        if (!substeps.empty()) std::printf("               %s\n", substeps.substr(2).c_str());
+        if (gain > 1.0)
+            std::printf(
+                "               small blocks govern it: with run.substeps: auto %.2g times fewer of them and of their "
+                "contacts are computed\n",
+                gain);
     } else {
         std::printf(", shorter while blocks move fast\n");
     }

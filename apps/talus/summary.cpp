@@ -162,6 +162,13 @@ std::string in_words(const AccuracySpec& accuracy) {
     return text;
 }
 
+std::string substeps_in_words(const Simulation& simulation) {
+    const State& state = simulation.state();
+    if (state.fast.empty()) return simulation.scenario().run.substeps > 1 ? "; no block is small enough for substeps" : "";
+    return "; " + std::to_string(std::count(state.fast.begin(), state.fast.end(), 1)) + " of " +
+           std::to_string(state.fast.size()) + " blocks take " + std::to_string(state.substeps) + " substeps in it";
+}
+
 void print_stage(const Simulation& simulation) {
     if (simulation.timeless()) {
         std::printf("%s: static, until the unbalanced ratio is below %s\n", simulation.stage().name.c_str(),
@@ -174,9 +181,9 @@ void print_stage(const Simulation& simulation) {
                     number(simulation.state().stage_step, "s").c_str());
         return;
     }
-    std::printf("%s: step %s (rigorous bound %s, limit estimated at %s)\n", simulation.stage().name.c_str(),
+    std::printf("%s: step %s (rigorous bound %s, limit estimated at %s)%s\n", simulation.stage().name.c_str(),
                 number(simulation.state().stage_step, "s").c_str(), number(stable.bound, "s").c_str(),
-                number(stable.estimate, "s").c_str());
+                number(stable.estimate, "s").c_str(), substeps_in_words(simulation).c_str());
 }
 
 void print_summary(const Simulation& simulation, double wall_time) {

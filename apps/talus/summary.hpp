@@ -19,6 +19,8 @@ std::string block_and_place(const Model& model, BlockId block);
 /// "0.001 of the motion".
 std::string in_words(const AccuracySpec& accuracy);
 
+/// What follows the step in a sentence; empty if all blocks take the same.
+std::string substeps_in_words(const Simulation& simulation);
 void print_stage(const Simulation& simulation);
 void print_summary(const Simulation& simulation, double wall_time);
 void print_error_estimate(const ErrorEstimate& estimate, const std::optional<AccuracySpec>& accuracy);

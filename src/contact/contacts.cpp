@@ -74,8 +74,9 @@ public:
         int i = slot_of(first);
         const int slots_end = slot_of(last);
         ChunkPlan plan;
-        std::span<const Idle> known;
-        if (!index_.chunks.empty()) known = index_.chunks[chunk].idle;
+        std::span<const Idle> known[2];  // of as many paces
+        const std::size_t chunks = (model_.blocks.size() + blocks_per_chunk - 1) / blocks_per_chunk;
+        for (std::size_t k = chunk, pace = 0; k < index_.chunks.size(); k += chunks) known[pace++] = index_.chunks[k].idle;
         const auto keep_alive = [&](int slot) {
             const Contact& c = old_[slot];
             if (c.alive && movable_(c.part_a, c.part_b)) plan.keep(slot, c);
@@ -100,9 +101,12 @@ private:
         return static_cast<int>(std::ranges::lower_bound(old_, part, {}, &Contact::part_a) - old_.begin());
     }
 
-    static Idle idle_of(int slot, std::span<const Idle>& known) {
-        while (!known.empty() && known.front().slot < slot) known = known.subspan(1);
-        return !known.empty() && known.front().slot == slot ? known.front() : Idle{};
+    static Idle idle_of(int slot, std::span<const Idle> (&known)[2]) {
+        for (std::span<const Idle>& of_pace : known) {
+            while (!of_pace.empty() && of_pace.front().slot < slot) of_pace = of_pace.subspan(1);
+            if (!of_pace.empty() && of_pace.front().slot == slot) return of_pace.front();
+        }
+        return {};
     }
 
     void look_at(int from, const Pair& p, ChunkPlan& plan) const {
@@ -185,11 +189,16 @@ void refresh_contacts(const Model& model, const Placed& placed, std::span<const 
 #pragma omp parallel for schedule(dynamic)
     for (int k = 0; k < chunks; ++k) plans[k] = refresh.plan(k);
 
-    index.chunks.resize(chunks);
+    const int paces = state.fast.empty() ? 1 : 2;
+    index.chunks.resize(paces * chunks);
     int n = 0;
     for (int k = 0; k < chunks; ++k) {
         index.chunks[k].begin = n;
         index.chunks[k].end = n += static_cast<int>(plans[k].entries.size());
+        index.chunks[k].pace = paces == 1 ? Pace::all : Pace::slow;
+        if (paces == 1) continue;
+        ContactIndex::Chunk& fast = index.chunks[k + chunks];
+        fast.begin = index.chunks[k].begin, fast.end = n, fast.pace = Pace::fast, fast.sorted = false;
     }
     const std::vector<Contact>& old = state.contacts.list.read();
     std::vector<Contact> list(n);
@@ -200,6 +209,7 @@ void refresh_contacts(const Model& model, const Placed& placed, std::span<const 
         chunk.sorted = false;
         chunk.idle = std::move(plans[k].idle);
         for (Idle& idle : chunk.idle) idle.slot += chunk.begin;
+        if (paces == 2) index.chunks[k + chunks].idle = chunk.idle;
         for (int i = chunk.begin; i < chunk.end; ++i) {
             const Entry& e = plans[k].entries[i - chunk.begin];
             if (e.from >= 0) {
@@ -217,7 +227,11 @@ void refresh_contacts(const Model& model, const Placed& placed, std::span<const 
 
 void sort_contacts_again(const Model& model, const Contacts& contacts, BlockId block, ContactIndex& index) {
     if (index.chunks.empty()) return;
-    const auto mark = [&](BlockId a, int slot) { index.chunks[a / blocks_per_chunk].changed.push_back(slot); };
+    const std::size_t chunks = (model.blocks.size() + blocks_per_chunk - 1) / blocks_per_chunk;
+    const auto mark = [&](BlockId a, int slot) {
+        for (std::size_t k = a / blocks_per_chunk; k < index.chunks.size(); k += chunks)
+            index.chunks[k].changed.push_back(slot);
+    };
     for (int i = index.first_a[block]; i < index.first_a[block + 1]; ++i) mark(block, i);
     for (int e = index.first_b[block]; e < index.first_b[block + 1]; ++e)
         mark(model.parts.block[contacts.list.key(index.slot_b[e]).part_a], index.slot_b[e]);

@@ -52,6 +52,7 @@ struct CornerSlot {
 struct ContactIndex {
     struct Chunk {  // contacts [begin, end) of the list: those whose block a is one of a few neighbouring numbers
         int begin = 0, end = 0;
+        Pace pace = Pace::all;        // of those that are meant; with substeps there is one more chunk for each, of fast ones
         bool sorted = false;              // whether the kinds below are up to date but for `changed`; all ascending
         std::vector<int> changed;         // contacts that are perhaps of another kind now
         std::vector<FaceSlot> faces;      // alive, without intact bonds: computed many at a time, see FaceTable
@@ -93,8 +94,9 @@ void find_rest(const Model& model, const State& state, const ContactIndex& index
                std::span<Rest> rest);
 
 /// Geometry and law of every contact in the list but those between two frozen blocks, for velocities of the half step before
-/// `now` and a step dt (0: forces only). Adds what slip and dashpots dissipate to the ledger.
-void update_contacts(const Model& model, const Placed& placed, double dt, State& state, ContactIndex& index);
+/// `now` and a step dt (0: forces only); of one pace only, if that is asked. Adds what slip and dashpots dissipate to the
+/// ledger.
+void update_contacts(const Model& model, const Placed& placed, double dt, Pace pace, State& state, ContactIndex& index);
 
 /// load[b] += sum over its contacts, in key order. Contacts that carry nothing hold zeros, which change no bit of a sum.
 void sum_contacts(std::span<const BlockRange> ranges, const Contacts& contacts, const ContactIndex& index,

@@ -39,6 +39,7 @@ public:
     void operator()(ContactIndex::Chunk& chunk, FaceTable& table, ContactWork& work) {
         single_.work = {};
         table_ = &table;
+        pace_ = chunk.pace;
         // To put one contact into its place takes as long as to look at some eight in their order.
         if (!chunk.sorted || 8 * static_cast<int>(chunk.changed.size()) > chunk.end - chunk.begin)
             sort(chunk);
@@ -109,7 +110,7 @@ private:
         chunk.others.clear();
         chunk.changed.clear();
         for (int i = chunk.begin; i < chunk.end; ++i) {
-            if (both_frozen(list_[i])) continue;
+            if (left_out(list_[i])) continue;
             while (next != known.end() && next->slot < i) ++next;
             add(i, next != known.end() && next->slot == i ? *next : Idle{.slot = i}, chunk);
         }
@@ -123,7 +124,7 @@ private:
             remove(chunk.corners, i);
             remove(chunk.others, i);
             remove(chunk.idle, i);
-            if (!both_frozen(list_[i])) add(i, {.slot = i}, chunk);
+            if (!left_out(list_[i])) add(i, {.slot = i}, chunk);
         }
         chunk.changed.clear();
     }
@@ -173,8 +174,10 @@ private:
         chunk.faces.erase(place);
     }
 
-    bool both_frozen(const Contact& c) const {
-        return state_.frozen(model_.parts.block[c.part_a]) && state_.frozen(model_.parts.block[c.part_b]);
+    bool left_out(const Contact& c) const {  // of this chunk
+        const BlockId a = model_.parts.block[c.part_a], b = model_.parts.block[c.part_b];
+        if (state_.frozen(a) && state_.frozen(b)) return true;
+        return pace_ != Pace::all && (pace_ == Pace::fast) != (state_.is_fast(a) || state_.is_fast(b));
     }
 
     // ---- what all batches have in common
@@ -345,26 +348,29 @@ private:
     SingleContacts single_;
     FaceTable* table_ = nullptr;           // of this chunk
     std::vector<int>* changed_ = nullptr;  // of this chunk
+    Pace pace_ = Pace::all;
 };
 
 }  // namespace
 
-void update_contacts(const Model& model, const Placed& placed, double dt, State& state, ContactIndex& index) {
+void update_contacts(const Model& model, const Placed& placed, double dt, Pace pace, State& state, ContactIndex& index) {
     static const Kernels kernels{face_kernel(best_vector_unit()), corner_kernel(best_vector_unit())};
-    const int chunks = static_cast<int>(index.chunks.size());
     std::vector<FaceTable>& tables = state.contacts.list.tables();
     if (tables.empty())  // the list is new, or somebody has changed it
         for (ContactIndex::Chunk& chunk : index.chunks) chunk.sorted = false;
-    tables.resize(chunks);
+    tables.resize(index.chunks.size());
+    // Chunks of slow contacts come first, if there are such.
+    const int all = static_cast<int>(index.chunks.size());
+    const int begin = pace == Pace::fast ? all / 2 : 0, chunks = pace == Pace::all ? all : all / 2;
     std::vector<ContactWork> work(chunks);
     if (chunks == 1) {  // see core/parallel.hpp
-        Evaluator(model, placed, dt, state, index, kernels)(index.chunks[0], tables[0], work[0]);
+        Evaluator(model, placed, dt, state, index, kernels)(index.chunks[begin], tables[begin], work[0]);
     } else {
 #pragma omp parallel
         {
             Evaluator evaluate(model, placed, dt, state, index, kernels);
 #pragma omp for schedule(dynamic)
-            for (int k = 0; k < chunks; ++k) evaluate(index.chunks[k], tables[k], work[k]);
+            for (int k = 0; k < chunks; ++k) evaluate(index.chunks[begin + k], tables[begin + k], work[k]);
         }
     }
     state.contacts.list.fall_behind();

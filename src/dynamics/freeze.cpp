@@ -56,7 +56,7 @@ bool wake_disturbed(const Model& model, std::span<const BlockRange> ranges, cons
             state.calm[b] = 0;
             // It counts again in the kinetic energy of the ledger.
             state.ledger.kinetic0 -=
-                0.125 * state.stage_step * state.stage_step * force_squared(model.blocks, b, state.load[b]);
+                0.125 * state.ledger_step() * state.ledger_step() * force_squared(model.blocks, b, state.load[b]);
             woken = true;
         }
     return woken;

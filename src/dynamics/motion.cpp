@@ -31,9 +31,9 @@ Force load_of(const Load& l, const Vec2& force, double moment, double angle) {
     return {force, cross(arm, force) + moment};
 }
 
-Force load_at(const Load& l, double t, double angle) { return load_of(l, {l.force_x(t), l.force_y(t)}, l.moment(t), angle); }
-
 }  // namespace
+
+Force load_at(const Load& l, double t, double angle) { return load_of(l, {l.force_x(t), l.force_y(t)}, l.moment(t), angle); }
 
 void kick(const Model& model, const Awake& awake, std::span<const Force> load, Motion& motion, double dt) {
     for_all(static_cast<int>(awake.moving.size()), 1, [&](int k) {
@@ -126,8 +126,9 @@ void weigh(const Model& model, std::span<const BlockRange> ranges, const State& 
     });
 }
 
-void add_loads(const Model& model, const State& state, std::span<Force> load) {
+void add_loads(const Model& model, const State& state, Pace pace, std::span<Force> load) {
     for (const Load& l : model.loads) {
+        if (!state.has(pace, l.block)) continue;
         const Force f = load_at(l, state.stage_time, state.motion.angle[l.block]);
         load[l.block].force += f.force;
         load[l.block].torque += f.torque;
@@ -249,14 +250,15 @@ double account(const Model& model, const Awake& awake, const StepEnd& before, co
 
 double kinetic_energy_of_ledger(const Model& model, const State& state, double dt) {
     double energy = 0.0;
-    const auto add = [&](double inverse, double v, double f) {
-        if (inverse != 0.0) energy += 0.5 * v * v / inverse - 0.125 * dt * dt * f * f * inverse;
+    const auto add = [&](double inverse, double v, double f, double own) {
+        if (inverse != 0.0) energy += 0.5 * v * v / inverse - 0.125 * own * own * f * f * inverse;
     };
     for (int b = 0; b < model.blocks.size(); ++b) {
         if (state.frozen(b)) continue;  // does not swing
-        add(model.blocks.inv_mass[b].x(), state.motion.velocity[b].x(), state.load[b].force.x());
-        add(model.blocks.inv_mass[b].y(), state.motion.velocity[b].y(), state.load[b].force.y());
-        add(model.blocks.inv_inertia[b], state.motion.spin[b], state.load[b].torque);
+        const double own = state.is_fast(b) ? dt / state.substeps : dt;
+        add(model.blocks.inv_mass[b].x(), state.motion.velocity[b].x(), state.load[b].force.x(), own);
+        add(model.blocks.inv_mass[b].y(), state.motion.velocity[b].y(), state.load[b].force.y(), own);
+        add(model.blocks.inv_inertia[b], state.motion.spin[b], state.load[b].torque, own);
     }
     return energy;
 }

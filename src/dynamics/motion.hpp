@@ -30,8 +30,8 @@ double release_share(const Model& model, double stage_time);
 /// load = weight + what is left of the forces of deleted neighbours, at state.stage_time.
 void weigh(const Model& model, std::span<const BlockRange> ranges, const State& state, std::span<Force> load);
 
-/// load += loads of the scene, at state.stage_time.
-void add_loads(const Model& model, const State& state, std::span<Force> load);
+/// load += loads of the scene on blocks of a pace, at state.stage_time.
+void add_loads(const Model& model, const State& state, Pace pace, std::span<Force> load);
 
 /// m/s2, mean gravity over the step of dt that begins at stage_time.
 Vec2 mean_gravity(const Model& model, double stage_time, double dt);
@@ -60,7 +60,11 @@ inline double force_squared(const Blocks& blocks, BlockId b, const Force& load) 
     return load.force.cwiseAbs2().dot(blocks.inv_mass[b]) + load.torque * load.torque * blocks.inv_inertia[b];
 }
 
-/// J, (m/2) v(t - dt/2) . v(t + dt/2) summed over the free blocks: changes by exactly the mid-step work.
+/// Force and torque of a load at t, on a block turned by `angle`.
+Force load_at(const Load& load, double t, double angle);
+
+/// J, (m/2) v(t - dt/2) . v(t + dt/2) summed over the free blocks: changes by exactly the mid-step work. With substeps, dt
+/// of fast blocks is shorter by as much as theirs are.
 double kinetic_energy_of_ledger(const Model& model, const State& state, double dt);
 
 /// J: kinetic energy less the work done since the start of the ledger; zero but for rounding with dt = stage_step, also if

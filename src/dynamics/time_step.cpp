@@ -154,12 +154,33 @@ std::vector<Matrix3> boundary_stiffness(const Model& model, const Placed& placed
     return all;
 }
 
+std::vector<double> block_limits(const Model& model, const Placed& placed, const State& state) {
+    const std::vector<Matrix3> whole = boundary_stiffness(model, placed, state.removed);
+    std::vector<double> limits(model.blocks.size(), std::numeric_limits<double>::infinity());
+    for (BlockId b = 0; b < model.blocks.size(); ++b) {
+        const Vector3 free = inverse_mass(model, b);
+        if (state.removed[b] || free.isZero()) continue;
+        limits[b] = damped_limit(std::sqrt(2.0 * largest_eigenvalue(whole[b], free)), model.contact_damping);
+    }
+    return limits;
+}
+
+double narrowest(const Model& model, const State& state) {
+    double width = std::numeric_limits<double>::infinity();
+    for (BlockId b = 0; b < model.blocks.size(); ++b)
+        for (PartId p = model.blocks.first_part[b]; p < model.blocks.first_part[b + 1]; ++p)
+            if (!state.removed[b])
+                width = std::min(width, model.parts.thickness[p] * (state.is_fast(b) ? state.substeps : 1));
+    return width;
+}
+
 StableStep stable_step(const Model& model, const Placed& placed, const State& state) {
     const Stiffness most = largest_stiffness(model);
-    const std::vector<Matrix3> whole = boundary_stiffness(model, placed, state.removed);
+    const std::vector<double> limits = block_limits(model, placed, state);
     StableStep step;
     step.thinnest = std::numeric_limits<double>::infinity();
-    double bound = 0.0, alone = 0.0;
+    double alone = 0.0;
+    step.bound = std::numeric_limits<double>::infinity();
     for (BlockId b = 0; b < model.blocks.size(); ++b) {
         if (state.removed[b]) continue;
         for (PartId p = model.blocks.first_part[b]; p < model.blocks.first_part[b + 1]; ++p)
@@ -174,12 +195,10 @@ StableStep stable_step(const Model& model, const Placed& placed, const State& st
             longest.setZero();
             add_face(model, longest, middle, placed.corner[k].normal, length, most.kn[b], most.ks[b]);
         });
-        const double here = 2.0 * largest_eigenvalue(whole[b], free);
-        if (here > bound) bound = here, step.block = b;
+        if (limits[b] < step.bound) step.bound = limits[b], step.block = b;
         alone = std::max(alone, largest_eigenvalue(longest, free));
     }
     const double found = power_iteration(model, springs_of(model, state));
-    step.bound = damped_limit(std::sqrt(bound), model.contact_damping);
     step.estimate = std::max(damped_limit(std::sqrt(std::max(alone, found)), model.contact_damping), step.bound);
     return step;
 }

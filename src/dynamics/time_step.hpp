@@ -24,6 +24,12 @@ struct StableStep {
 /// alone on its longest face. Both are shortened for contact damping: 2/omega (sqrt(1 + xi^2) - xi), xi = beta omega / 2.
 StableStep stable_step(const Model& model, const Placed& placed, const State& state);
 
+/// [nb] s, that bound for each block: the least of them is that of all. Infinite for blocks that are held or removed.
+std::vector<double> block_limits(const Model& model, const Placed& placed, const State& state);
+
+/// m, smallest width of a part, with those of blocks that take substeps as many times wider: what a step may not pass over.
+double narrowest(const Model& model, const State& state);
+
 /// [nb] K_ii of that bound, about the centroid, with x, y and the angle as the corners are placed now: the stiffness of a
 /// block whose whole boundary is pressed against neighbours at rest. Zero for blocks that are held or removed.
 std::vector<Eigen::Matrix3d> boundary_stiffness(const Model& model, const Placed& placed,

@@ -129,6 +129,10 @@ struct Course {
     double certain_at = 0.0;  // s, since the last reset
 };
 
+/// How often something is computed: with the blocks that take substeps, or once in a step. A contact is as fast as the
+/// faster of its blocks.
+enum class Pace : std::uint8_t { all, slow, fast };
+
 struct State {
     double time = 0.0;        // s, since the last reset
     double stage_time = 0.0;  // s, since the stage began
@@ -138,11 +142,13 @@ struct State {
     int stage = 0;            // index into the list of stages; the last one is `run`
     double stage_step = 0.0;  // s, chosen at the start of the stage
     int step_halvings = 0;    // dt = stage_step / 2^step_halvings
+    int substeps = 1;         // of fast blocks in a step
     Motion motion;
     std::vector<Force> load;     // [nb] sum of all forces at `time`, also on held blocks
     std::vector<Force> damping;  // [nb] share of local damping in it; empty = none
     Contacts contacts;
     std::vector<std::uint8_t> calm;     // [nb] looks in a row at which the block was at rest; empty = nothing is frozen
+    std::vector<std::uint8_t> fast;     // [nb] 1 = steps `substeps` times in a step; empty = all step alike
     std::vector<std::uint8_t> removed;  // [nb] deleted by a stage
     std::vector<Force> release;         // [nb] forces of deleted neighbours that fade away in this stage; empty = none
     std::vector<Vec2> start_position;   // [nb] m, position and angle from which displacements count
@@ -156,6 +162,11 @@ struct State {
     static constexpr std::uint8_t calm_needed = 2;
     /// At rest, see dynamics/freeze.hpp.
     bool frozen(int block) const { return !calm.empty() && calm[block] >= calm_needed; }
+    bool is_fast(int block) const { return !fast.empty() && fast[block]; }
+    bool has(Pace pace, int block) const { return pace == Pace::all || is_fast(block) == (pace == Pace::fast); }
+    /// s: the ledger of kick-drift-kick takes kinetic energy by the velocities half of it before and after; with substeps,
+    /// of which blocks have different ones, by those of now, and books each kick by itself.
+    double ledger_step() const { return fast.empty() ? stage_step : 0.0; }
 };
 
 }  // namespace talus

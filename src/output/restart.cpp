@@ -16,8 +16,8 @@ namespace {
 
 /// Breaks the build when a member is added that `transfer` does not know.
 [[maybe_unused]] void every_member_is_transferred(const State& state, const Contact& contact) {
-    [[maybe_unused]] const auto& [time, stage_time, calm, step, total_steps, stage, stage_step, halvings, motion, load,
-                                  damping, contacts, calm_looks, removed, release, start_position, start_angle, ledger,
+    [[maybe_unused]] const auto& [time, stage_time, calm, step, total_steps, stage, stage_step, halvings, substeps, motion, load,
+                                  damping, contacts, calm_looks, fast, removed, release, start_position, start_angle, ledger,
                                   earlier_gain, statics, unsolved, course] = state;
     [[maybe_unused]] const auto& [window_length, window_begin, next_look, looks, give, kinetic, kinetic_last, kinetic_before,
                                   sum, turn_sum, velocity_time, mean_time, mean, turn_mean, mean_velocity, gained_speed,
@@ -260,6 +260,7 @@ void transfer(Archive& to, AnyState& state) {
     to.one("stage", "1", state.stage);
     to.one("stage_step", "s", state.stage_step);
     to.one("step_halvings", "1", state.step_halvings);
+    to.one("substeps", "1", state.substeps);
     to.list("motion/position", "m", state.motion.position);
     to.list("motion/angle", "rad", state.motion.angle);
     to.list("motion/velocity", "m/s", state.motion.velocity);
@@ -270,6 +271,7 @@ void transfer(Archive& to, AnyState& state) {
     to.list("contacts/reaction", "N, N m", state.contacts.reaction);
     to.list("contacts/broken", "1", state.contacts.broken);
     to.list("calm", "1", state.calm);
+    to.list("fast", "1", state.fast);
     to.list("removed", "1", state.removed);
     to.list("release", "N, N m", state.release);
     to.list("start_position", "m", state.start_position);
@@ -350,7 +352,7 @@ bool fits(const State& s, const Model& model) {
     return one_per_block(s.motion.position, s.motion.angle, s.motion.velocity, s.motion.spin, s.load, s.removed,
                          s.start_position, s.start_angle) &&
            (s.release.empty() || s.release.size() == blocks) && (s.damping.empty() || s.damping.size() == blocks) &&
-           (s.calm.empty() || s.calm.size() == blocks) && fits(s.course, blocks) && s.contacts.reaction.size() == contacts &&
+           (s.calm.empty() || s.calm.size() == blocks) && (s.fast.empty() || s.fast.size() == blocks) && fits(s.course, blocks) && s.contacts.reaction.size() == contacts &&
            s.contacts.broken.size() == static_cast<std::size_t>(model.cells()) &&
            std::all_of(s.contacts.list.begin(), s.contacts.list.end(), known);
 }

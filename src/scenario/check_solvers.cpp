@@ -76,6 +76,14 @@ void check_rounding(const Scenario& scenario, const Cursor& at) {
     for (const Cursor& stage : at["stages"].items()) check_strength(stage["change"]["joints"]);
 }
 
+void check_substeps(const Scenario& scenario, const Cursor& substeps) {
+    const auto steps = [](const std::string& solver) { return solver == "explicit" || solver == "auto"; };
+    bool any = steps(scenario.run.solver);
+    for (const StageSpec& stage : scenario.stages) any |= steps(stage.solver);
+    if (substeps.given() && scenario.run.substeps != 1 && !any)
+        substeps.fault("only the explicit solver has a step that small blocks shorten; leave it out");
+}
+
 }  // namespace
 
 void check_solvers(const Scenario& scenario, const Cursor& at) {
@@ -93,6 +101,7 @@ void check_solvers(const Scenario& scenario, const Cursor& at) {
     if (last) check_damping(at["run"], false);
     check_joints(at["joints"], any, all, open);
     check_rounding(scenario, at);
+    check_substeps(scenario, at["run"]["substeps"]);
     if (!last) return;
     check_accuracy(at["run"]["accuracy"]["joint_stress"]);
     for (const Cursor& history : at["record"]["history"].items()) check_observed(history, history["component"].text());

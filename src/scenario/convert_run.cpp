@@ -78,6 +78,13 @@ AccuracySpec convert_accuracy(const Cursor& at) {
     return {plain ? at.maybe_number() : at["motion"].maybe_number(), at["joint_stress"].maybe_number(), at.where()};
 }
 
+int convert_substeps(const Cursor& at) {
+    if (!at.is(Value::Kind::number)) return 0;
+    const int count = static_cast<int>(at.number());
+    if ((count & (count - 1)) != 0) at.fault("is not a power of two: 1, 2, 4, 8, or auto");
+    return count;
+}
+
 }  // namespace
 
 std::vector<StageSpec> convert_stages(const Cursor& scenario) {
@@ -105,6 +112,7 @@ RunSpec convert_run(const Cursor& at) {
     run.damping = convert_damping(at["damping"]);
     run.freeze = at["freeze"].maybe_number();
     run.freeze_given = at["freeze"].given();
+    run.substeps = convert_substeps(at["substeps"]);
     run.search = at["search"].text();
     run.skin = at["skin"].maybe_number();
     run.face_path = at["face_path"].yes();

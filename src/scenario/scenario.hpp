@@ -205,6 +205,7 @@ struct RunSpec {
     bool unchecked = false;  // accept a time step above the stable estimate, and blocks that pass through each other
     DampingSpec damping;
     std::optional<double> freeze;  // share of its weight below which a block at rest is frozen; absent: never
+    int substeps = 1;  // of blocks whose stable step is short: 1, 2, 4, 8; 0: what saves most
     std::string search = "auto";
     std::optional<double> skin;             // m; absent: automatic
     bool face_path = true;                  // closed-form path for faces; false: general distance potential everywhere

@@ -130,6 +130,9 @@ Shape run() {
          {"freeze", either({choice({"never"}), number("1", {0.0, 0.1, true, false})}), derived("never, or by `accuracy`"),
           "a block at rest is not computed while less than this share of what its contacts hand on, or of its weight if "
           "that is more, is out of balance"},
+         {"substeps", either({choice({"auto"}), integer({1, 8})}), fallback("1"),
+          "1, 2, 4 or 8 steps of blocks whose stable step is short in one step of the others; `auto`: as many as save most, "
+          "if that is a fifth; explicit solver only"},
          {"search",
           choice({"auto", "safe-regions", "verlet", "isu", "isu-separated", "isu-parallel", "dess", "dess-fused", "direct",
                   "direct-simd", "grid"}),

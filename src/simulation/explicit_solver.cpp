@@ -2,6 +2,7 @@
 #include "core/errors.hpp"
 #include "dynamics/freeze.hpp"
 #include "dynamics/motion.hpp"
+#include "dynamics/substeps.hpp"
 #include "simulation/deep_overlap.hpp"
 #include "simulation/simulation.hpp"
 
@@ -19,6 +20,18 @@ constexpr int energy_interval = 100;  // steps between looks at the energy: hard
 }  // namespace
 
 void Simulation::step_explicit(double dt) {
+    state_.fast.empty() ? move(dt) : move_in_substeps(dt);
+    if (!state_.calm.empty()) freeze_and_wake();
+    check_speed();
+    if (!scenario_.run.unchecked && time_to_look(state_.total_steps, speed_, dt, stable_.thinnest)) check_overlaps();
+    state_.step_halvings = step_halvings(state_.stage_step, state_.step_halvings, speed_, narrowest_);
+    const double whole = std::ldexp(state_.stage_step, -state_.step_halvings) * (1.0 - 1e-6);
+    // Not after a step that was cut: what leapfrog keeps is another sum for each length of step.
+    if (dt >= whole && (state_.total_steps % energy_interval == 0 || time_step() < whole))
+        check_energy_explicit(energy_explosion);
+}
+
+void Simulation::move(double dt) {
     keep_forces();
     kick(model_, awake_, load_before_, state_.motion, dt / 2);  // v(t) -> v(t + dt/2)
     drive(model_, state_.stage_time + dt / 2, state_.motion);
@@ -32,14 +45,6 @@ void Simulation::step_explicit(double dt) {
     lap(Part::account);
     kick(model_, awake_, state_.load, state_.motion, dt / 2);  // v(t + dt/2) -> v(t + dt)
     drive(model_, state_.stage_time, state_.motion);
-    if (!state_.calm.empty()) freeze_and_wake();
-    check_speed();
-    if (!scenario_.run.unchecked && time_to_look(state_.total_steps, speed_, dt, stable_.thinnest)) check_overlaps();
-    state_.step_halvings = step_halvings(state_.stage_step, state_.step_halvings, speed_, stable_.thinnest);
-    const double whole = std::ldexp(state_.stage_step, -state_.step_halvings) * (1.0 - 1e-6);
-    // Not after a step that was cut: what leapfrog keeps is another sum for each length of step.
-    if (dt >= whole && (state_.total_steps % energy_interval == 0 || time_step() < whole))
-        check_energy_explicit(energy_explosion);
 }
 
 // Blocks that pass through each other because the step is too long have gained energy first: then that is the cause to tell.
@@ -74,13 +79,21 @@ void Simulation::keep_forces() {
 void Simulation::update_forces(double dt) {  // dt = 0 once at the start: no slip
     const bool left = place(model_, awake_, state_.motion, skin_, placed_);
     lap(Part::place);
-    if (left) refresh(skin_);
-    if (left && !state_.calm.empty()) find_awake(true);
+    if (left) renew_list();
     lap(Part::search);
-    update_contacts(model_, placed_, dt, state_, contact_index_);
+    update_contacts(model_, placed_, dt, Pace::all, state_, contact_index_);
     lap(Part::contacts);
+    sum_forces();
+}
+
+void Simulation::renew_list() {
+    refresh(skin_);
+    if (!state_.calm.empty()) find_awake(true);
+}
+
+void Simulation::sum_forces() {
     weigh(model_, awake_.loaded, state_, state_.load);
-    add_loads(model_, state_, state_.load);
+    add_loads(model_, state_, Pace::all, state_.load);
     sum_contacts(awake_.loaded, state_.contacts, contact_index_, state_.load);
     if (model_.local_damping > 0.0) damp_locally(model_, awake_, state_.motion, state_.load, state_.damping);
     lap(Part::sum);
@@ -142,7 +155,9 @@ void Simulation::freeze_and_wake() {
         if (frozen) state_.ledger.local_damping += ledger_error() - before;  // the motion that was left is damped away
         changed |= frozen;
     }
-    if (changed) find_awake();
+    if (!changed) return;
+    find_awake();
+    paces_.forget();
 }
 
 // K - (dt^2/8) F M^-1 F + stored + dissipated - work is what kick-drift-kick keeps exactly while contacts are linear
@@ -163,15 +178,13 @@ void Simulation::begin_explicit() {
     }
     stable_ = stable_step(model_, placed_, state_);
     const StageSpec& now = stage();
-    if (now.time_step) {
-        state_.stage_step = *now.time_step;
-    } else {
-        double dt = scenario_.run.step_fraction * stable_.bound;
-        // A whole number of steps, so that none has to be cut at the end.
-        if (!std::isfinite(dt)) dt = now.until.time.value_or(1.0) / 1000;  // nothing that could move is stiff
-        if (now.until.time) dt = *now.until.time / std::ceil(*now.until.time / dt);
-        state_.stage_step = dt;
-    }
+    double dt = now.time_step.value_or(scenario_.run.step_fraction * stable_.bound);
+    if (!std::isfinite(dt)) dt = now.until.time.value_or(1.0) / 1000;  // nothing that could move is stiff
+    if (scenario_.run.substeps != 1) begin_substeps(dt);
+    // A whole number of steps, so that none has to be cut at the end.
+    if (now.until.time && !now.time_step) dt = *now.until.time / std::ceil(*now.until.time / dt);
+    state_.stage_step = dt;
+    narrowest_ = narrowest(model_, state_);
 }
 
 }  // namespace talus

@@ -106,6 +106,7 @@ Simulation::Simulation(const Scenario& scenario, Scene scene, State saved) : Sim
     place(model_, awake_, state_.motion, skin_, placed_);
     find_awake();
     stable_ = stable_step(model_, placed_, state_);
+    narrowest_ = narrowest(model_, state_);
 }
 
 Simulation::Simulation(Simulation&&) noexcept = default;
@@ -192,6 +193,7 @@ void Simulation::drop_scratch() {
     pairs_.clear();
     statics_.reset();
     rigid_.reset();
+    paces_ = {};
     awake_ = all_awake(model_.blocks.size());
     place(model_, awake_, state_.motion, skin_, placed_);
     find_awake();
@@ -274,7 +276,8 @@ void Simulation::check_stages() const {
         if (!at.time_step || scenario_.run.unchecked || at.solver != "explicit") continue;
         const StableStep stable = stable_step(model, placed_, state);
         const bool listed = i < static_cast<int>(scenario_.stages.size());
-        if (*at.time_step > stable.estimate)
+        const int substeps = scenario_.run.substeps == 0 ? most_substeps : scenario_.run.substeps;
+        if (*at.time_step > substeps * stable.estimate)
             faults.push_back({at.time_step_where, (listed ? "stages[" + std::to_string(i) + "]" : "run") + ".time_step",
                               refusal(stable)});
     }
@@ -289,6 +292,9 @@ void Simulation::begin_stage() {
     state_.damping.clear();
     state_.release.clear();
     state_.calm.clear();
+    if (!state_.fast.empty()) placed_.boxed.clear();  // the list has chunks for each pace
+    state_.fast.clear();
+    state_.substeps = 1;
     find_awake();
     state_.calm_checks = 0;
     equilibrium_ = false;
@@ -376,7 +382,7 @@ double Simulation::energy_gain() const {
 }
 
 double Simulation::ledger_error() const {
-    return talus::ledger_error(model_, state_, method().springs ? state_.stage_step : 0.0);
+    return talus::ledger_error(model_, state_, method().springs ? state_.ledger_step() : 0.0);
 }
 
 }  // namespace talus

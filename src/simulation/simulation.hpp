@@ -4,6 +4,7 @@
 #include "contact/contacts.hpp"
 #include "contact/search.hpp"
 #include "core/stopwatch.hpp"
+#include "dynamics/substeps.hpp"
 #include "dynamics/time_step.hpp"
 #include "model/awake.hpp"
 #include "model/build.hpp"
@@ -85,6 +86,8 @@ public:
     double max_speed() const { return speed_; }                    // m/s, in the last step
     std::int64_t refreshes() const { return refreshes_; }          // how often the list of pairs was renewed
     std::int64_t boxes_renewed() const { return boxes_renewed_; }  // of how many blocks, over all refreshes
+    /// Contacts and blocks that are computed without substeps, over those with the substeps that save most; 1 if none do.
+    double gain_of_substeps() const;
     double frozen_share() const;  // of the blocks, in the mean of the steps done in this process in which blocks may freeze
     std::string search_choice() const { return search_->choice(); }  // see PairSearch::choice
     const std::array<double, part_names.size()>& seconds() const { return seconds_; }
@@ -112,6 +115,11 @@ private:
 
     void begin_explicit();
     void step_explicit(double dt);
+    void move(double dt);
+    void begin_substeps(double& dt);  // chooses them, and with them the step
+    void move_in_substeps(double dt);
+    void forces_in_substep(int parts, double part);
+    void forces_of_step(double dt);
     void check_energy_explicit(double most);
 
     void forces_rigid(double dt);
@@ -146,6 +154,8 @@ private:
     void check_stages() const;
     void check_timeless() const;
     void update_forces(double dt);
+    void renew_list();
+    void sum_forces();
     void refresh(double skin);
     void check_speed() const;
     /// Throws if more than `most` of the largest energy was `gained` (J) since the start, from nowhere.
@@ -164,6 +174,7 @@ private:
     std::vector<DrivenBlock> driven_;   // act in the last stage only
 
     Awake awake_;  // Scratch from here on
+    Paces paces_;
     Placed placed_;
     std::unique_ptr<PairSearch> search_;
     std::vector<Pair> pairs_;
@@ -180,6 +191,7 @@ private:
     std::unique_ptr<rigid::Scratch> rigid_;  // of the rigid solver, while it is at work
 
     StableStep stable_;
+    double narrowest_ = 0.0;  // m, see there
     bool equilibrium_ = false;
     double speed_ = 0.0;
     std::int64_t refreshes_ = 0, boxes_renewed_ = 0, steps_done_ = 0;

@@ -187,9 +187,9 @@ TEST_CASE("contact geometry and joint law find a rock under its in-situ stress a
         const Awake all = all_awake(m.blocks.size());
         place(m, all, state.motion, 0.0, placed);
         refresh_contacts(m, placed, pairs, std::vector<std::uint8_t>(m.blocks.size(), 1), 0.0, state, index);
-        update_contacts(m, placed, 0.0, state, index);
+        update_contacts(m, placed, 0.0, Pace::all, state, index);
         weigh(m, all.loaded, state, state.load);
-        add_loads(m, state, state.load);
+        add_loads(m, state, Pace::all, state.load);
         sum_contacts(all.loaded, state.contacts, index, state.load);
         // Blocks fit to 1e-15 m or so, and a joint of 1e10 Pa/m turns that into 1e-5 Pa; the stress is 1e5 Pa.
         CHECK(unbalanced_ratio(m, state) < 1e-9);

@@ -34,7 +34,7 @@ public:
         }
         drift(all_awake(2), state_.motion, 1.0);
         place(model_, all_awake(2), state_.motion, 0.1, placed_);
-        update_contacts(model_, placed_, 1.0, state_, index_);
+        update_contacts(model_, placed_, 1.0, Pace::all, state_, index_);
     }
 
     Vector6 forces() const {
