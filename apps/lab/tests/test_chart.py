@@ -223,6 +223,17 @@ def test_rocking_follows_its_equation_of_motion():
     assert math.cos(a - other) - math.cos(a) == pytest.approx(energy, rel=1e-3)
 
 
+def test_a_chain_moves_as_small_steps_of_its_masses_do():
+    mass, k, g, steps = np.array([2.0, 50.0, 50.0, 2.0, 50.0, 50.0]), 1e6, 9.81, 20000
+    x, v, dt = np.zeros(6), np.zeros(6), 0.1 / steps
+    for _ in range(steps):  # leapfrog, error about (w dt)^2
+        stretch = np.diff(x, prepend=0.0)
+        force = k * (np.append(stretch[1:], 0.0) - stretch)
+        v += dt * (force / mass + g) * (0.5 if _ == 0 else 1.0)
+        x += dt * v
+    assert theory.chain_motion(0.1, k, g, 2, 2.0, 2, 50.0) == pytest.approx(x[-1], rel=1e-5)
+
+
 def test_values_of_a_motion():
     time = np.linspace(0, 2, 201)
     tilt = np.where(time < 1, 0.1 * (1 - time**2), -0.05 * np.sin(2 * (time - 1)))

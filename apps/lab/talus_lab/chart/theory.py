@@ -32,10 +32,23 @@ def rocking_amplitude(width: float, height: float, share: float) -> float:
     return critical - math.acos(math.cos(critical) + kept**2 * (math.cos(critical * (1.0 - share)) - math.cos(critical)))
 
 
+def chain_motion(time: float, stiffness: float, gravity: float, groups: int, slab: float, blocks: int, block: float) -> float:
+    """m, how far the top of a column has sunk when gravity (m/s2) came on at once: `groups` times a mass of `slab` below `blocks` masses of
+    `block` (kg), on springs of `stiffness` (N/m), as the sum of its modes (f_k/w_k^2)(1 - cos w_k t)."""
+    mass = np.array(([slab] + [block] * int(blocks)) * int(groups))
+    n = len(mass)
+    springs = 2.0 * np.eye(n) - np.eye(n, k=1) - np.eye(n, k=-1)
+    springs[-1, -1] = 1.0
+    root = 1.0 / np.sqrt(mass)
+    squares, modes = np.linalg.eigh(stiffness * springs * np.outer(root, root))
+    swing = modes.T @ (gravity * np.sqrt(mass)) * (1.0 - np.cos(np.sqrt(squares) * time)) / squares
+    return float(root[-1] * (modes[-1] @ swing))
+
+
 def _block(width: float, height: float, gravity: float) -> tuple[float, float]:
     """Critical tilt in rad, p^2 in 1/s2."""
     return math.atan2(width, height), 0.75 * gravity / (0.5 * math.hypot(width, height))
 
 
 THEORY = {"rocking_tilt": rocking_tilt, "rocking_impact_time": rocking_impact_time,
-          "rocking_amplitude": rocking_amplitude}
+          "rocking_amplitude": rocking_amplitude, "chain_motion": chain_motion}
