@@ -136,8 +136,10 @@ void print_static_stages(const Simulation& simulation) {
 void print_verdict(const StabilityVerdict& v) {
     std::printf("  verdict        %s", name_of(v.verdict));
     if (v.moving_blocks > 0)
-        std::printf(", %s: %d block%s of %s together, %d detached", name_of(v.mechanism), v.moving_blocks,
-                    v.moving_blocks == 1 ? "" : "s", number(v.moving_area, "m2").c_str(), v.detached_blocks);
+        std::printf(", %s: %d block%s of %s together, %.3g %% of all that is free, %d detached",
+                    v.verdict == Stability::unstable ? name_of(v.mechanism) : "loose stones", v.moving_blocks,
+                    v.moving_blocks == 1 ? "" : "s", number(v.moving_area, "m2").c_str(), 100.0 * v.moving_share,
+                    v.detached_blocks);
     std::printf("\n                 %s\n", v.reason.c_str());
 }
 

@@ -111,12 +111,12 @@ struct Course {
     double kinetic_before = 0.0;
     std::vector<Vec2> sum;             // [nb] m, displacements summed over the looks of this window
     std::vector<double> turn_sum;      // [nb] rad
-    double velocity_time = 0.0;        // s, at which a block that gains evenly has the velocities below
     double mean_time = 0.0;            // s, middle of the last window
     std::vector<Vec2> mean;            // [nb] m, mean displacement in it
     std::vector<double> turn_mean;     // [nb] rad
     std::vector<Vec2> velocity;        // [nb] m/s, from the mean of the window before to that of the last one
-    std::vector<Vec2> gained;          // [nb] m/s2, its change since the window before that
+    std::vector<Vec2> velocity_begin;  // [nb] m/s, when this window began
+    std::vector<std::uint8_t> fell;    // [nb] nothing carried it in the last window
     std::vector<double> speed;         // [nb] m/s, of the farthest point, between the same means
     std::vector<double> speed_before;  // [nb] m/s, one window earlier
     std::vector<std::uint8_t> going;   // [nb] windows in a row in which it went on no slower than before

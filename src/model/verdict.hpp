@@ -29,6 +29,7 @@ struct StabilityVerdict {
     double max_displacement = 0.0;          // m, of the centroid of a free block
     int moving_blocks = 0, detached_blocks = 0;
     double moving_area = 0.0;                // m2
+    double moving_share = 0.0;               // 1, of the area of all free blocks
     std::vector<Mechanism> block_mechanism;  // [nb] none: still
 };
 

@@ -20,7 +20,7 @@ namespace {
                                   damping, contacts, calm_looks, fast, removed, release, start_position, start_angle, ledger,
                                   earlier_gain, statics, unsolved, course] = state;
     [[maybe_unused]] const auto& [window_length, window_begin, next_look, looks, give, kinetic, kinetic_last, kinetic_before,
-                                  sum, turn_sum, velocity_time, mean_time, mean, turn_mean, mean_velocity, gained_speed,
+                                  sum, turn_sum, mean_time, mean, turn_mean, mean_velocity, velocity_begin, fell,
                                   speed, speed_before, going, reach, rested, no_further, set_out, mechanism, verdict,
                                   certain_at] = course;
     [[maybe_unused]] const auto& [unsolved_steps, unsolved_speed, unsolved_way] = unsolved;
@@ -232,12 +232,12 @@ void transfer_course(Archive& to, AnyCourse& c) {
     to.one("course/kinetic_before", "J", c.kinetic_before);
     to.list("course/sum", "m", c.sum);
     to.list("course/turn_sum", "rad", c.turn_sum);
-    to.one("course/velocity_time", "s", c.velocity_time);
     to.one("course/mean_time", "s", c.mean_time);
     to.list("course/mean", "m", c.mean);
     to.list("course/turn_mean", "rad", c.turn_mean);
     to.list("course/velocity", "m/s", c.velocity);
-    to.list("course/gained", "m/s2", c.gained);
+    to.list("course/velocity_begin", "m/s", c.velocity_begin);
+    to.list("course/fell", "1", c.fell);
     to.list("course/speed", "m/s", c.speed);
     to.list("course/speed_before", "m/s", c.speed_before);
     to.list("course/going", "1", c.going);
@@ -337,7 +337,7 @@ bool within(int value, int first, std::size_t end) { return value >= first && va
 
 bool fits(const Course& c, std::size_t blocks) {
     const auto all = [&](const auto&... lists) { return ((lists.size() == blocks) && ...); };
-    return c.window == 0.0 || all(c.sum, c.turn_sum, c.mean, c.turn_mean, c.velocity, c.gained, c.speed, c.speed_before,
+    return c.window == 0.0 || all(c.sum, c.turn_sum, c.mean, c.turn_mean, c.velocity, c.velocity_begin, c.fell, c.speed, c.speed_before,
                                   c.going, c.reach, c.rested, c.no_further, c.set_out, c.mechanism);
 }
 

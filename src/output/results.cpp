@@ -204,6 +204,7 @@ void ResultsWriter::write_verdict(const StabilityVerdict& v) {
     file_.set(verdict_group, "moving_blocks", std::int64_t{v.moving_blocks});
     file_.set(verdict_group, "detached_blocks", std::int64_t{v.detached_blocks});
     file_.set(verdict_group, "moving_area", v.moving_area);
+    file_.set(verdict_group, "moving_share", v.moving_share);
     const std::string path = verdict_group + "/block_mechanism";
     if (!file_.exists(path)) file_.make_rows<std::uint8_t>(path, {}, {"1", "blocks"});
     file_.truncate(path, 0);

@@ -110,6 +110,7 @@ RunSpec convert_run(const Cursor& at) {
     if (run.step_fraction_given) run.step_fraction = at["step_fraction"].number();
     run.unchecked = at["unchecked"].yes();
     run.damping = convert_damping(at["damping"]);
+    run.smallest_failure = at["smallest_failure"].maybe_number().value_or(run.smallest_failure);
     run.freeze = at["freeze"].maybe_number();
     run.freeze_given = at["freeze"].given();
     run.substeps = convert_substeps(at["substeps"]);

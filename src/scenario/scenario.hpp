@@ -204,6 +204,7 @@ struct RunSpec {
     std::optional<double> most_travel;  // m, of any point in a step of the rigid solver; no key, comes from the accuracy
     bool unchecked = false;  // accept a time step above the stable estimate, and blocks that pass through each other
     DampingSpec damping;
+    double smallest_failure = 0.001;  // share of the area of free blocks; less on its way is loose stones
     std::optional<double> freeze;  // share of its weight below which a block at rest is frozen; absent: never
     int substeps = 1;  // of blocks whose stable step is short: 1, 2, 4, 8; 0: what saves most
     std::string search = "auto";

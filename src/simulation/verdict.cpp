@@ -38,7 +38,8 @@ bool Simulation::loads_are_on() const {
 
 Circumstances Simulation::circumstances() const {
     const double gravity = std::hypot(model_.gravity_x(state_.stage_time), model_.gravity_y(state_.stage_time));
-    return {loads_are_on(), method().springs, method().springs ? 0.0 : rigid_speed * gravity * state_.stage_step};
+    return {loads_are_on(), method().springs, method().springs ? 0.0 : rigid_speed * gravity * state_.stage_step,
+            scenario_.run.smallest_failure};
 }
 
 void Simulation::look_at_blocks() {
@@ -48,7 +49,7 @@ void Simulation::look_at_blocks() {
 bool Simulation::ended_by_verdict() const { return stage().until.verdict && state_.course.verdict != Stability::undecided; }
 
 StabilityVerdict Simulation::verdict() const {
-    return timeless() ? conclude_static(model_, state_) : conclude(model_, state_, loads_are_on());
+    return timeless() ? conclude_static(model_, state_, circumstances()) : conclude(model_, state_, circumstances());
 }
 
 }  // namespace talus

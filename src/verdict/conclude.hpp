@@ -4,13 +4,15 @@
 #include "model/model.hpp"
 #include "model/state.hpp"
 #include "model/verdict.hpp"
+#include "verdict/course.hpp"
 
 namespace talus {
 
-/// Of a state that a solver for motion has brought about. `loads_are_on`: see Circumstances.
-StabilityVerdict conclude(const Model& model, const State& state, bool loads_are_on);
+/// Of a state that a solver for motion has brought about.
+StabilityVerdict conclude(const Model& model, const State& state, const Circumstances& now);
 
-/// Of the end of a static stage: equilibrium, a block that keeps moving, or neither within the iterations.
-StabilityVerdict conclude_static(const Model& model, const State& state);
+/// Of the end of a static stage: equilibrium, a block that keeps moving or has gone far before it came to rest, or neither
+/// within the iterations.
+StabilityVerdict conclude_static(const Model& model, const State& state, const Circumstances& now);
 
 }  // namespace talus

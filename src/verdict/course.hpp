@@ -10,9 +10,10 @@ namespace talus {
 
 /// What the simulation knows and a look does not.
 struct Circumstances {
-    bool loads_are_on = false;  // gravity, loads and driven blocks no longer change
-    bool springs = false;       // joints give
-    double creep = 0.0;         // m/s, at which nothing moves that can be told from rest
+    bool loads_are_on = false;      // gravity, loads and driven blocks no longer change
+    bool springs = false;           // joints give
+    double creep = 0.0;             // m/s, at which nothing moves that can be told from rest
+    double smallest_failure = 0.0;  // share of the area of free blocks; less on its way is loose stones
 };
 
 /// At the start of a stage, and after displacements have been reset: nothing is known of the stage yet.
@@ -30,15 +31,10 @@ void close_window(const Model& model, const Circumstances& now, Footing& footing
 bool goes_on(const State& state, BlockId b);
 /// Whether it has moved visibly and still does, or has gone far: one of those that move, once it is known that some go on.
 bool moves(const Model& model, const State& state, BlockId b);
-/// Whether all free blocks have rested, or come no further, for `share` of the windows that it takes to be certain.
-bool all_stand(const Model& model, const State& state, double share);
-/// Where it goes, as far as can be said now.
-Mechanism mechanism_of(const Model& model, const State& state, const Footing& footing, BlockId b);
-
-/// The same from how it stands now alone, for a state without a course.
-Mechanism mechanism_seen_now(const Model& model, const State& state, const Footing& footing, BlockId b);
-
-/// Not held, driven or deleted.
-bool free_to_move(const Model& model, const State& state, BlockId b);
+/// Whether so much rock (m2) is a failure, and not some loose stones.
+bool is_failure(double area, double smallest);
+/// m2, of free blocks that are known to be on their way, or have not rested, or come no further, for `share` of the windows
+/// that it takes to be certain.
+double restless_area(const Model& model, const State& state, double share);
 
 }  // namespace talus

@@ -1,6 +1,7 @@
 #include "verdict/footing.hpp"
 
 #include "model/material_point.hpp"
+#include "verdict/way.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -13,11 +14,6 @@ namespace {
 constexpr double goes_along = 0.2;
 
 }  // namespace
-
-double way_gone(const Model& model, const State& state, BlockId b) {
-    const double moved = (state.motion.position[b] - state.start_position[b]).norm();
-    return std::max(moved, model.blocks.radius[b] * std::abs(state.motion.angle[b] - state.start_angle[b]));
-}
 
 void Footing::find(const Model& model, const State& state) {
     contact_.assign(model.blocks.size(), -1);
@@ -37,21 +33,20 @@ void Footing::find(const Model& model, const State& state) {
     }
 }
 
-double Footing::slip(const Model& model, const State& state, BlockId b) const {
+Base Footing::base(const Model& model, const State& state, BlockId b) const {
     for (int riders = 0; riders < model.blocks.size() && contact_[b] >= 0; ++riders) {
         const Contact& c = state.contacts.list[contact_[b]];
         const BlockId first = model.parts.block[c.part_a], second = model.parts.block[c.part_b];
         const BlockId below = first == b ? second : first;
         const Vec2 moved =
             fixed_to(state, b, c.point).displacement(state) - fixed_to(state, below, c.point).displacement(state);
-        const double turned = model.blocks.radius[b] * std::abs(state.motion.angle[b] - state.start_angle[b] -
-                                                                (state.motion.angle[below] - state.start_angle[below]));
-        const double along = std::abs(moved.dot(perp(c.normal)));
-        if (model.blocks.held(below) || std::max(moved.norm(), turned) > goes_along * way_gone(model, state, b))
-            return along;
+        const double turned = turning_way(
+            model, b, state.motion.angle[b] - state.start_angle[b] - (state.motion.angle[below] - state.start_angle[below]));
+        if (!free_to_move(model, state, below) || std::max(moved.norm(), turned) > goes_along * way_gone(model, state, b))
+            return {b, std::abs(moved.dot(perp(c.normal)))};
         b = below;
     }
-    return 0.0;
+    return {b};
 }
 
 }  // namespace talus

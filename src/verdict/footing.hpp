@@ -1,4 +1,4 @@
-// What carries a block, and whether the block slips on it.
+// What carries a block, and on what it moves.
 #pragma once
 
 #include "model/model.hpp"
@@ -8,17 +8,19 @@
 
 namespace talus {
 
-/// m, how far the block has gone since the last reset: its centroid, or its farthest corner by turning, whichever is more.
-double way_gone(const Model& model, const State& state, BlockId b);
+/// Where a block, or the mass that it goes along with, moves on something else.
+struct Base {
+    BlockId block;      // the lowest of the mass
+    double slip = 0.0;  // m, of that block since the last reset, along the joint that carries it
+};
 
 /// The contact that carries each block: of those that press on it, the one that acts most against gravity. Scratch.
 class Footing {
 public:
     void find(const Model& model, const State& state);
     bool carried(BlockId b) const { return contact_[b] >= 0; }
-    /// m, since the last reset along the joint on which the block moves. A block that goes along with what carries it moves
-    /// on the joint on which that moves.
-    double slip(const Model& model, const State& state, BlockId b) const;
+    /// A block that goes along with what carries it has the base of that. Nothing carries the base of a mass that falls.
+    Base base(const Model& model, const State& state, BlockId b) const;
 
 private:
     std::vector<int> contact_;   // [nb] in the contact list, -1 = nothing carries it

@@ -38,10 +38,10 @@ public:
         each(t.earlier);
         const Course& c = s.course;
         add(c.window, c.window_begin, c.next_look, c.looks, c.give, c.kinetic, c.kinetic_last, c.kinetic_before,
-            c.velocity_time, c.mean_time, c.verdict, c.certain_at);
-        for (const auto* list : {&c.sum, &c.mean, &c.velocity, &c.gained}) each(*list);
+            c.mean_time, c.verdict, c.certain_at);
+        for (const auto* list : {&c.sum, &c.mean, &c.velocity, &c.velocity_begin}) each(*list);
         for (const auto* list : {&c.turn_sum, &c.turn_mean, &c.speed, &c.speed_before, &c.reach}) each(*list);
-        for (const auto* list : {&c.going, &c.rested, &c.no_further}) each(*list);
+        for (const auto* list : {&c.going, &c.rested, &c.no_further, &c.fell}) each(*list);
         each(c.set_out);
         each(c.mechanism);
     }

@@ -56,6 +56,11 @@ def moving_area(run: Run) -> float:
     return _told(run, "moving_area")
 
 
+def moving_share(run: Run) -> float:
+    """Their share of the area of all free blocks, by the verdict; nan without one."""
+    return _told(run, "moving_share")
+
+
 def _told(run: Run, name: str) -> float:
     return float(run.verdict.get(name, np.nan))
 
@@ -200,6 +205,7 @@ MEASURES: Mapping[str, Measure] = {
     "moving_blocks": Measure(moving_blocks, "1", "moving blocks"),
     "detached_blocks": Measure(detached_blocks, "1", "detached blocks"),
     "moving_area": Measure(moving_area, "m2", "moving area"),
+    "moving_share": Measure(moving_share, "1", "moving share of the area"),
     "max_displacement": Measure(max_displacement, "m", "largest displacement"),
     "max_rotation_deg": Measure(max_rotation_deg, "deg", "largest rotation"),
     "max_speed": Measure(max_speed, "m/s", "largest speed"),

@@ -17,7 +17,7 @@ from talus_lab.run import Run
 from talus_lab.sweep.ranges import is_finite
 
 DEFAULT = ("verdict", "mechanism", "moving_blocks", "max_displacement")
-ALWAYS = ("verdict", "mechanism", "moving_blocks", "detached_blocks", "moving_area")  # cost nothing, and may be asked for later
+ALWAYS = ("verdict", "mechanism", "moving_blocks", "detached_blocks", "moving_area", "moving_share")  # cost nothing, and may be asked for later
 NAMED = ("history", "energy")  # measures that a config gives as `history: NAME`
 FORM = "is neither the name of a measure nor {name: COLUMN, measure: ...}, {name: COLUMN, history: ...} or {name: COLUMN, energy: ...}"
 
