@@ -26,9 +26,14 @@ bool set_out_with_slip(const Model& model, const State& state, const Footing& fo
     return found == SetOut::not_yet ? slips(model, state, footing, base) : found == SetOut::with_slip;
 }
 
-Mechanism on_its_base(const Model& model, const State& state, BlockId base, bool with_slip) {
-    const double turned = turning_way(model, base, state.motion.angle[base] - state.start_angle[base]);
-    if (turned <= a_part * way_gone(model, state, base)) return Mechanism::slide;
+double turn_of(const State& state, BlockId b) { return state.motion.angle[b] - state.start_angle[b]; }
+
+// A rider turns like its base when it is part of what leans over; it does not when a small block rolls beneath it.
+Mechanism on_its_base(const Model& model, const State& state, BlockId rider, BlockId base, bool with_slip) {
+    const bool turns_along =
+        turn_of(state, rider) * turn_of(state, base) >= half * turn_of(state, base) * turn_of(state, base);
+    const BlockId b = turns_along ? base : rider;
+    if (turning_way(model, b, turn_of(state, b)) <= a_part * way_gone(model, state, b)) return Mechanism::slide;
     return with_slip ? Mechanism::slide_and_topple : Mechanism::topple;
 }
 
@@ -68,7 +73,7 @@ bool rotates_as_one(const Model& model, const State& state, const std::vector<Bl
     double sine = 0.0, cosine = 0.0;
     for (const BlockId b : blocks) {
         const Vec2 from = state.start_position[b] - start, to = state.motion.position[b] - end;
-        const double turn = state.motion.angle[b] - state.start_angle[b];
+        const double turn = turn_of(state, b);
         sine += model.blocks.mass[b] * cross(from, to) + model.blocks.inertia[b] * std::sin(turn);
         cosine += model.blocks.mass[b] * from.dot(to) + model.blocks.inertia[b] * std::cos(turn);
     }
@@ -77,7 +82,7 @@ bool rotates_as_one(const Model& model, const State& state, const std::vector<Bl
     for (const BlockId b : blocks) {
         const Vec2 from = state.start_position[b] - start, to = state.motion.position[b] - end,
                    turned_from = turned(from, angle);
-        const double turn = state.motion.angle[b] - state.start_angle[b], inertia = model.blocks.inertia[b];
+        const double turn = turn_of(state, b), inertia = model.blocks.inertia[b];
         all += model.blocks.mass[b] * (state.motion.position[b] - state.start_position[b]).squaredNorm() +
                inertia * square_way(turn);
         left += model.blocks.mass[b] * (to - turned_from).squaredNorm() + inertia * square_way(turn - angle);
@@ -116,12 +121,12 @@ bool fell_freely(const Model& model, const State& state, const Footing& footing,
 Mechanism mechanism_of(const Model& model, const State& state, const Footing& footing, BlockId b) {
     if (state.course.fell[b]) return Mechanism::fall;
     const BlockId base = footing.base(model, state, b).block;
-    return on_its_base(model, state, base, set_out_with_slip(model, state, footing, base));
+    return on_its_base(model, state, b, base, set_out_with_slip(model, state, footing, base));
 }
 
 Mechanism mechanism_seen_now(const Model& model, const State& state, const Footing& footing, BlockId b) {
     if (!footing.carried(b)) return Mechanism::fall;
-    return on_its_base(model, state, footing.base(model, state, b).block, slips(model, state, footing, b));
+    return on_its_base(model, state, b, footing.base(model, state, b).block, slips(model, state, footing, b));
 }
 
 Mechanism mechanism_of_the_mass(const Model& model, const State& state, std::vector<Mechanism>& block_mechanism) {

@@ -147,6 +147,57 @@ TEST_CASE("a block that bounces and comes to rest stands; one that falls further
     CHECK(found.time < 2.0);
 }
 
+TEST_CASE("how much rock is a failure can be said") {
+    // A ledge of 100 m2, and beside it a stone of 0.04 m2 that falls past it: a share of 0.0004.
+    const auto scene = [](const std::string& share) {
+        return head + R"(joints: {joint: {friction_angle_deg: 30, normal_stiffness: 1e9, shear_stiffness: 1e9}}
+blocks:
+  - {name: ground, rectangle: {corner: [-5, -1], size: [20, 1]}, held: true}
+  - {name: ledge, rectangle: {corner: [0, 0], size: [10, 10]}}
+  - {name: stone, rectangle: {corner: [16, 5], size: [0.2, 0.2]}}
+run: {until: {verdict: true, time: 20}, solver: rigid)" +
+               share + "}\n";
+    };
+    for (const char* share : {"", ", smallest_failure: 0.0005"}) {
+        const StabilityVerdict found = verdict_on(scene(share));
+        CAPTURE(share, found.reason);
+        CHECK(found.verdict == Stability::stable);
+        CHECK(found.mechanism == Mechanism::none);
+        CHECK(found.moving_blocks == 1);
+        CHECK(found.moving_share == Approx(0.04 / 100.04));
+        CHECK(found.block_mechanism.back() == Mechanism::fall);
+    }
+    for (const char* share : {", smallest_failure: 0", ", smallest_failure: 0.0003"}) {
+        const StabilityVerdict found = verdict_on(scene(share));
+        CAPTURE(share, found.reason);
+        CHECK(found.verdict == Stability::unstable);
+        CHECK(found.mechanism == Mechanism::fall);
+    }
+}
+
+TEST_CASE("a block that slides out from between its neighbours and then drops has fallen; one that has slid far has slid") {
+    // In a slot of 75 degrees between two walls, drawn along its axis. The end of the slot is `ahead` of the block.
+    const auto in_a_slot = [](double ahead) {
+        std::ostringstream text;
+        text.precision(17);
+        text << "title: slot\ngravity: [" << 9.81 * std::sin(radians(75.0)) << ", " << -9.81 * std::cos(radians(75.0))
+             << "]\n"
+             << "materials: {rock: {density: 2500}}\n"
+             << "joints: {joint: {friction_angle_deg: 20, normal_stiffness: 1e9, shear_stiffness: 1e9}}\nblocks:\n"
+             << "  - {name: below, rectangle: {corner: [-30, -1], size: [30, 1]}, held: true}\n"
+             << "  - {name: above, rectangle: {corner: [-30, 1], size: [30, 1]}, held: true}\n"
+             << "  - {name: block, rectangle: {corner: [" << -1.2 - ahead << ", 0], size: [1.2, 1]}}\n"
+             << "run: {until: {time: 4}, solver: rigid}\n";
+        return text.str();
+    };
+    const StabilityVerdict drops = verdict_on(in_a_slot(0.0)), slides = verdict_on(in_a_slot(5.0));
+    CAPTURE(drops.reason, slides.reason);
+    CHECK(drops.verdict == Stability::unstable);
+    CHECK(drops.mechanism == Mechanism::fall);
+    CHECK(slides.verdict == Stability::unstable);
+    CHECK(slides.mechanism == Mechanism::slide);
+}
+
 TEST_CASE("blocks that go together go the way of the mass") {
     for (const char* solver : {"explicit", "rigid"}) {
         const StabilityVerdict found = verdict_on(bonded_slab(solver));
