@@ -26,8 +26,8 @@ struct Nearest {  // what of a part lies nearest to a point
 class RoundedPart {
 public:
     /// `at`: m, the centroid of its block.
-    RoundedPart(const PlacedPart& part, const Vec2& at, const Model& model)
-        : part(part), at_(at), cut_(&model.corners.cut[part.first]) {}
+    RoundedPart(const PlacedPart& placed, const Vec2& at, const Model& model)
+        : part(placed), at_(at), cut_(&model.corners.cut[placed.first]) {}
 
     const PlacedPart& part;
 
