@@ -138,7 +138,7 @@ void Paces::find(const Model& model, const State& state) {
     mark(model, state, near);
     near_.clear();
     for_each(slow_, [&](BlockId b) {
-        if (near[b]) near_.push_back({b, 0, Vec2::Zero(), 0.0});
+        if (near[b]) near_.push_back({.position = Vec2::Zero(), .angle = 0.0, .block = b, .since = 0});
     });
     find_pulls(model, state);
 }
@@ -172,10 +172,12 @@ void Paces::find_pulls(const Model& model, const State& state) {
 
 void Paces::all_become_near(const Model& model, const State& state, int parts) {
     for_each(others_, [&](BlockId b) {
-        Line line{b, parts, state.motion.position[b], state.motion.angle[b]};
-        line.way = parts * state.motion.velocity[b];
-        line.turn = parts * state.motion.spin[b];
-        near_.push_back(line);
+        near_.push_back({.position = state.motion.position[b],
+                         .way = parts * state.motion.velocity[b],
+                         .angle = state.motion.angle[b],
+                         .turn = parts * state.motion.spin[b],
+                         .block = b,
+                         .since = parts});
     });
     std::ranges::sort(near_, {}, &Line::block);
     mark(model, state, std::vector<std::uint8_t>(model.blocks.size(), 1));

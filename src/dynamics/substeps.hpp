@@ -84,16 +84,16 @@ public:
     void place_means(const Motion& motion, int parts, Placed& placed) const;
 
 private:
-    struct Line {  // on which a near block moves
-        BlockId block;
-        int since;                // parts of the step, when it began
-        Vec2 position;            // m, where
-        double angle;             // rad
-        Vec2 way = Vec2::Zero();  // m/s, velocities before it, each times its parts
-        double turn = 0.0;        // rad/s
-        Force pull = {}, external = {}, load = {};
+    struct Line {                    // on which a near block moves
+        Vec2 position;               // m, where it began
+        Vec2 way = Vec2::Zero();     // m/s, velocities before it, each times its parts
         Vec2 weight = Vec2::Zero();  // N, of a carried block
-        int first_pull = 0;          // in pulls_, up to that of the next line
+        Force pull = {}, external = {}, load = {};
+        double angle;       // rad, as it began
+        double turn = 0.0;  // rad/s, as `way`
+        BlockId block;
+        int since;           // parts of the step, when it began
+        int first_pull = 0;  // in pulls_, up to that of the next line
 
         bool pulls() const { return !pull.force.isZero(0.0) || pull.torque != 0.0; }
     };
