@@ -6,6 +6,7 @@ import csv
 import json
 import multiprocessing
 import os
+import signal
 import sys
 import time
 from concurrent.futures import ThreadPoolExecutor
@@ -111,6 +112,7 @@ class Driver:
         self.pid = self.process.pid
 
     def _call(self, arguments: list[str]) -> None:
+        signal.signal(signal.SIGINT, signal.default_int_handler)  # ignored where tests run in the background of a shell
         file = os.open(self.said, os.O_WRONLY | os.O_CREAT)
         os.dup2(file, 1), os.dup2(file, 2)
         sys.stdout, sys.stderr = os.fdopen(1, "w"), os.fdopen(2, "w")
