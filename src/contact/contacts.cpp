@@ -19,6 +19,8 @@ namespace {
 
 constexpr int blocks_per_chunk = 256;  // fixed, so that sums do not depend on the number of threads
 
+int chunks_of(const Model& model) { return (model.blocks.size() + blocks_per_chunk - 1) / blocks_per_chunk; }
+
 // Pairs that cannot move against each other are not looked at: parts of one block, two held blocks, removed ones.
 class Movable {
 public:
@@ -75,8 +77,8 @@ public:
         const int slots_end = slot_of(last);
         ChunkPlan plan;
         std::span<const Idle> known[2];  // of as many paces
-        const std::size_t chunks = (model_.blocks.size() + blocks_per_chunk - 1) / blocks_per_chunk;
-        for (std::size_t k = chunk, pace = 0; k < index_.chunks.size(); k += chunks) known[pace++] = index_.chunks[k].idle;
+        for (std::size_t k = chunk, pace = 0; k < index_.chunks.size(); k += chunks_of(model_))
+            known[pace++] = index_.chunks[k].idle;
         const auto keep_alive = [&](int slot) {
             const Contact& c = old_[slot];
             if (c.alive && movable_(c.part_a, c.part_b)) plan.keep(slot, c);
@@ -183,7 +185,7 @@ double touch_depth(const Model& model, PartId a, PartId b) { return 1e-10 * memo
 void refresh_contacts(const Model& model, const Placed& placed, std::span<const Pair> pairs,
                       std::span<const std::uint8_t> reboxed, double skin, State& state, ContactIndex& index) {
     index.skin = skin;
-    const int chunks = (model.blocks.size() + blocks_per_chunk - 1) / blocks_per_chunk;
+    const int chunks = chunks_of(model);
     const Refresh refresh(model, placed, pairs, reboxed, state, index);
     std::vector<ChunkPlan> plans(chunks);
 #pragma omp parallel for schedule(dynamic)
@@ -227,9 +229,8 @@ void refresh_contacts(const Model& model, const Placed& placed, std::span<const 
 
 void sort_contacts_again(const Model& model, const Contacts& contacts, BlockId block, ContactIndex& index) {
     if (index.chunks.empty()) return;
-    const std::size_t chunks = (model.blocks.size() + blocks_per_chunk - 1) / blocks_per_chunk;
-    const auto mark = [&](BlockId a, int slot) {
-        for (std::size_t k = a / blocks_per_chunk; k < index.chunks.size(); k += chunks)
+    const auto mark = [&](BlockId a, int slot) {  // of every pace
+        for (std::size_t k = a / blocks_per_chunk; k < index.chunks.size(); k += chunks_of(model))
             index.chunks[k].changed.push_back(slot);
     };
     for (int i = index.first_a[block]; i < index.first_a[block + 1]; ++i) mark(block, i);

@@ -1,7 +1,6 @@
 // Rounded corners in whole runs: the same bits for every search, number of threads, skin and restart, and a ledger that
 // closes.
 #include "core/random.hpp"
-#include "model/hash.hpp"
 #include "output/restart.hpp"
 #include "support/catch.hpp"
 #include "support/folder.hpp"
@@ -34,13 +33,7 @@ run: {until: {time: 0.5}, damping: {contact: 4e-4}, rounding_length: 0.02}
 
 template <class AfterStep>
 std::vector<std::uint64_t> trace(const Scenario& scenario, AfterStep after_step) {
-    WholeRun run(scenario);
-    std::vector<std::uint64_t> hashes;
-    run.to_the_end([&](WholeRun& r) {
-        after_step(r);
-        if (r.state().total_steps % 100 == 0) hashes.push_back(state_hash(r.model(), r.state()));
-    });
-    return hashes;
+    return hashes_of(scenario, 100, after_step);
 }
 
 const std::vector<std::uint64_t>& reference() {

@@ -2,7 +2,6 @@
 // restart, closed forms, what is conserved, and what happens beyond the limit.
 #include "core/errors.hpp"
 #include "core/random.hpp"
-#include "model/hash.hpp"
 #include "output/restart.hpp"
 #include "support/catch.hpp"
 #include "support/folder.hpp"
@@ -93,13 +92,7 @@ int fast_blocks(const State& state) { return static_cast<int>(std::count(state.f
 
 template <class AfterStep>
 std::vector<std::uint64_t> trace(const Scenario& scenario, AfterStep after_step) {
-    WholeRun run(scenario);
-    std::vector<std::uint64_t> hashes;
-    run.to_the_end([&](WholeRun& r) {
-        after_step(r);
-        if (r.state().total_steps % 20 == 0) hashes.push_back(state_hash(r.model(), r.state()));
-    });
-    return hashes;
+    return hashes_of(scenario, 20, after_step);
 }
 
 const char* const choices_of_run[] = {"substeps: 4", "substeps: 4, damping: {local: 0.3}, freeze: 0.02",

@@ -1,11 +1,13 @@
 // Whole runs driven step by step, with a look at the simulation, or a change of it, after every step.
 #pragma once
 
+#include "model/hash.hpp"
 #include "scenario/reader.hpp"
 #include "simulation/simulation.hpp"
 
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace talus::test {
 
@@ -42,6 +44,18 @@ public:
 private:
     std::optional<Simulation> simulation_;
 };
+
+/// Of the state after every `interval`-th step, and after whatever `after_step` did then.
+template <class AfterStep>
+std::vector<std::uint64_t> hashes_of(const Scenario& scenario, int interval, AfterStep after_step) {
+    WholeRun run(scenario);
+    std::vector<std::uint64_t> hashes;
+    run.to_the_end([&](WholeRun& r) {
+        after_step(r);
+        if (r.state().total_steps % interval == 0) hashes.push_back(state_hash(r.model(), r.state()));
+    });
+    return hashes;
+}
 
 inline Scenario scenario_of(const std::string& text) { return read_scenario_text(text, "test.yaml", "."); }
 
