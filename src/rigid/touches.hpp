@@ -62,6 +62,8 @@ public:
     Velocity uneven_way(const Bodies& bodies, std::span<const Velocity> before, int body, double dt) const;
 
 private:
+    Manifold look_at(const Model& model, const Placed& placed, const Contact& c, const Bodies& bodies,
+                     std::span<const Velocity> before, double dt, int& hint) const;
     bool moved_by_impact(const Bodies& bodies, int body) const;  // in this step
     void find_impacts(const Bodies& bodies, std::span<const Velocity> before, double fall, double dt);
     void find_uneven(const Bodies& bodies, std::span<const Velocity> before);

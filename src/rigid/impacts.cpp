@@ -1,0 +1,138 @@
+#include "rigid/touch_arms.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace talus::rigid {
+namespace {
+
+constexpr double none = 2.0;  // share of a step: no impact in it
+// Of a step, from its middle: what hits at its very end must not be missed by rounding, or the next step finds it inside.
+constexpr double at_the_latest = 0.5 * (1.0 + 1e-9);
+
+/// s, after the start of a step of dt, at which a gap closes that is `gap` (m) then and changes by `speed` (m/s, < 0) and
+/// the acceleration of weight and loads (m/s2); without the latter a block that bounces gains m g2 dt2 / 6 each time.
+double time_of_impact(double gap, double speed, double acceleration, double dt) {
+    const double root = std::sqrt(std::max(speed * speed - 2.0 * acceleration * gap, 0.0));
+    return std::clamp(2.0 * gap / (root - speed), 0.0, dt);
+}
+
+}  // namespace
+
+bool Touches::moved_by_impact(const Bodies& bodies, int body) const {
+    const Softness& soft = bodies.softness[body];
+    return impact_[body] <= 1.0 && soft.x + soft.y + soft.spin > 0.0;
+}
+
+// What closes faster than half a step of free fall hits at a time within the step, and bounces, if it does, from two steps
+// on: what rests must not. Until then all else acts on the two bodies as before: a corner about which a block has turned
+// carries weight until the next one lands, or the block would lose the share of a step each time. The impulse acts where the
+// two are then: with the arms of the middle of the step a block that rocks would lose a share of its spin that depends on
+// where in the step it lands.
+void Touches::find_impacts(const Bodies& bodies, std::span<const Velocity> before, double fall, double dt) {
+    impact_.assign(bodies.size(), none);
+    ahead_.assign(touches_.size(), 0.0);
+    landed_.assign(2 * touches_.size(), 0.0);
+    hit_.assign(2 * touches_.size(), none);
+    uneven_.assign(bodies.size(), {});
+    bool any = false;
+    for (std::size_t i = 0; i < touches_.size(); ++i) {
+        Touch& c = touches_[i];
+        bool hits[2] = {};
+        double first = 1.0;  // share of the step that is over then
+        const double slowest = rebound_[i] > 0.0 ? 4.0 : 1.0;
+        for (int end = 0; end < c.ends; ++end) {
+            const double gap = manifold_[i].gap[end], change = normal_velocity(c, before, end);
+            const double approach = -std::min(change, normal_velocity(c, bodies.velocity, end));
+            const double bent = std::abs(bend(manifold_[i], bodies, from_a_[i], c, end).x());
+            const double way = at_the_latest * dt * approach + 0.125 * bent * dt * dt;  // in half of the step
+            hits[end] = !(c.p[end] > 0.0 || -change * dt <= slowest * fall || std::abs(gap) > way);
+            if (!hits[end]) continue;
+            // What else carries a block that does not bounce, such as the corner it rocks about, is not known here.
+            const double gained = rebound_[i] > 0.0 ? normal_velocity(c, bodies.velocity, end) - change : 0.0;
+            hit_[2 * i + end] = time_of_impact(gap - 0.5 * dt * change, change, gained / dt, dt) / dt;
+            first = std::min(first, hit_[2 * i + end]);
+        }
+        if (!hits[0] && !hits[1]) continue;
+        any = true;
+        for (const int body : {c.a, c.b}) impact_[body] = std::min(impact_[body], first);
+        ahead_[i] = (first - 0.5) * dt;
+        set_arms(manifold_[i], from_a_[i], bodies, {ahead_[i], before[c.a], before[c.b]}, c);
+        for (int end = 0; end < c.ends && rebound_[i] > 0.0; ++end) {
+            if (!hits[end]) continue;
+            const double change = normal_velocity(c, before, end);
+            const double gained = normal_velocity(c, bodies.velocity, end) - change;  // by weight and loads
+            const double leaves = -rebound_[i] * (change + first * gained), rest = 1.0 - first;
+            c.least[end] = std::max(0.0, rest * gained + leaves);
+            if (c.least[end] == 0.0) continue;
+            end_[2 * i + end] = End::bounces;
+            uneven_[c.a].bounces = uneven_[c.b].bounces = true;
+            landed_[2 * i + end] = rest * dt * (leaves + 0.5 * rest * gained);
+        }
+    }
+    if (!any) return;
+    for (Touch& c : touches_) {
+        const double share = std::min(impact_[c.a], impact_[c.b]);
+        for (int k = 0; k < 3 && share <= 1.0; ++k) {
+            c.earlier[k] = share * c.p[k];
+            c.p[k] -= c.earlier[k];
+        }
+    }
+    find_uneven(bodies, before);
+}
+
+void Touches::find_uneven(const Bodies& bodies, std::span<const Velocity> before) {
+    gained_.assign(bodies.size(), {});
+    for (const Touch& c : touches_) apply(c, c.earlier, bodies.softness, gained_);
+    for (int q = 0; q < bodies.size(); ++q) {
+        const double first = impact_[q];
+        if (first > 1.0) continue;
+        const Velocity &v = bodies.velocity[q], &v0 = before[q];
+        const Velocity by_weight{v.x - v0.x, v.y - v0.y, v.spin - v0.spin};
+        const double early = first * first, late = uneven_[q].bounces ? (1.0 - first) * (1.0 - first) : 0.0;
+        uneven_[q].gained = {first * gained_[q].x + (early - late) * by_weight.x,
+                             first * gained_[q].y + (early - late) * by_weight.y,
+                             first * gained_[q].spin + (early - late) * by_weight.spin};
+    }
+}
+
+// With the velocities v0 and v1 at the start and the end of the step, g that weight and earlier impulses add until the share
+// f of it, and l that weight adds after it (nothing where the body is carried from then on): the way is dt/2 [f (2 v0 + g) +
+// (1 - f) (2 v1 - l)], that of the mean velocity dt/2 (v0 + v1).
+Velocity Touches::uneven_way(const Bodies& bodies, std::span<const Velocity> before, int body, double dt) const {
+    if (!moved_by_impact(bodies, body)) return {};
+    const Velocity &v0 = before[body], &v1 = bodies.velocity[body], &g = uneven_[body].gained;
+    const double late = 1.0 - 2.0 * impact_[body];
+    return {0.5 * dt * (late * (v1.x - v0.x) + g.x), 0.5 * dt * (late * (v1.y - v0.y) + g.y),
+            0.5 * dt * (late * (v1.spin - v0.spin) + g.spin)};
+}
+
+void Touches::add_earlier() {
+    pressed_.resize(2 * touches_.size());
+    for (std::size_t i = 0; i < touches_.size(); ++i) {
+        Touch& c = touches_[i];
+        for (int end = 0; end < 2; ++end) pressed_[2 * i + end] = c.p[end] > 0.0;
+        for (int k = 0; k < 3; ++k) c.p[k] += c.earlier[k];
+    }
+}
+
+double Touches::energy_of_later_landings(const Bodies& bodies, double speed, double together) const {
+    double energy = 0.0;
+    for (std::size_t i = 0; i < touches_.size(); ++i) {
+        const Touch& c = touches_[i];
+        double first = none;  // share of the step
+        for (const int body : {c.a, c.b})
+            if (moved_by_impact(bodies, body)) first = std::min(first, impact_[body]);
+        for (int end = 0; end < c.ends && rebound_[i] > 0.0 && first < none; ++end) {
+            const End kind = end_[2 * i + end];
+            const bool later = kind == End::bounces ? hit_[2 * i + end] > first + together : kind == End::comes_near;
+            if (!later || c.p[end] == 0.0) continue;
+            const double k = end == 0 ? c.k00 : c.k11;
+            const double approach = k * c.p[end] - normal_velocity(c, bodies.velocity, end);
+            if (approach > speed) energy += 0.5 * rebound_[i] * rebound_[i] * approach * approach / k;
+        }
+    }
+    return energy;
+}
+
+}  // namespace talus::rigid
