@@ -8,9 +8,12 @@
 namespace talus {
 
 /// What a step needs and finds beside what contacts know (ContactColumns); one row of numbers per quantity, one column per
-/// contact, names as in Approach, JointLaw and Response. What columns beyond `count` hold does not matter.
+/// contact, names as in Approach, JointLaw and Response. What columns beyond `count` hold does not matter to the others, but
+/// they are computed too, up to a whole number of `group`s: left to chance they hold denormal numbers, at ten times the
+/// cost.
 struct alignas(64) ContactBatch {
     static constexpr int size = ContactColumns::size;
+    static constexpr int group = 8;  // the widest vector register
     using Row = ContactColumns::Row;
 
     // what goes in
@@ -20,7 +23,8 @@ struct alignas(64) ContactBatch {
     Row valid, loaded;
     Row fx, fy, torque_a, torque_b, friction, damping, released;
 
-    int slot[size];  // where each contact stands in the list
+    int slot[size];      // where each contact stands in the list
+    int joint_of[size];  // whose numbers stand there, -1 = none
     int count = 0;
 
     [[gnu::always_inline]] JointLaw law(int i) const {

@@ -9,6 +9,8 @@
 // joints that it weakens or thickens.
 #pragma once
 
+#include "contact/corner_batch.hpp"
+#include "contact/face_batch.hpp"
 #include "model/awake.hpp"
 #include "model/model.hpp"
 #include "model/placed.hpp"
@@ -48,19 +50,27 @@ struct CornerSlot {
     double reach, touch_depth;     // m, as in CornerLines
 };
 
+/// Kept from step to step: to clear them would cost a scene of a few blocks a tenth of its step.
+struct Batches {
+    Batches();
+    FaceBatch faces{};
+    CornerBatch corners{};
+};
+
 /// Scratch: follows from the list.
 struct ContactIndex {
     struct Chunk {  // contacts [begin, end) of the list: those whose block a is one of a few neighbouring numbers
         int begin = 0, end = 0;
-        Pace pace = Pace::all;        // of those that are meant; with substeps there is one more chunk for each, of fast ones
-        bool sorted = false;              // whether the kinds below are up to date but for `changed`; all ascending
-        std::vector<int> changed;         // contacts that are perhaps of another kind now
+        Pace pace = Pace::all;     // of those that are meant; with substeps there is one more chunk for each, of fast ones
+        bool sorted = false;       // whether the kinds below are up to date but for `changed`; all ascending
+        std::vector<int> changed;  // contacts that are perhaps of another kind now
         std::vector<FaceSlot> faces;      // alive, without intact bonds: computed many at a time, see FaceTable
         std::vector<CornerSlot> corners;  // alive: the same
         std::vector<int> others;          // alive: corners in faces, bonds, what has parted and remembers
         std::vector<Idle> idle;           // not alive; also before they are sorted, if nothing has begun or ended since
     };
     std::vector<Chunk> chunks;
+    std::vector<Batches> batches;  // [threads]
     // Contacts in which block b is a: [first_a[b], first_a[b+1]) of the list. In which it is b: [first_b[b], first_b[b+1])
     // of `slot_b`, ascending; in the order of keys these come first.
     std::vector<int> first_a, first_b;  // [nb+1]

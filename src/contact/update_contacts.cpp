@@ -1,9 +1,8 @@
 // The loop over all contacts of one step: which kind each is, and what becomes of it.
 #include "contact/contacts.hpp"
-#include "contact/corner_batch.hpp"
-#include "contact/face_batch.hpp"
 #include "contact/idle.hpp"
 #include "contact/single_contacts.hpp"
+#include "contact/threads.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -18,7 +17,7 @@ struct Kernels {
 
 class Evaluator {
 public:
-    Evaluator(const Model& model, const Placed& placed, double dt, State& state, const ContactIndex& index,
+    Evaluator(const Model& model, const Placed& placed, double dt, State& state, const ContactIndex& index, Batches& batches,
               const Kernels& kernels)
         : model_(model),
           placed_(placed),
@@ -29,11 +28,11 @@ public:
           list_(state.contacts.list.behind()),
           index_(index),
           kernels_(kernels),
+          faces_(batches.faces),
+          corners_(batches.corners),
           single_(model, placed, dt, state.contacts) {
-        for (int k = 0; k < ContactBatch::size; ++k) {
-            faces_.a_lo[k] = faces_.a_hi[k] = faces_.b_lo[k] = faces_.b_hi[k] = 1.0;
-            joint_of_face_[k] = joint_of_corner_[k] = -1;
-        }
+        std::ranges::fill(faces_.joint_of, -1);  // a stage may have changed the joints
+        std::ranges::fill(corners_.joint_of, -1);
     }
 
     void operator()(ContactIndex::Chunk& chunk, FaceTable& table, ContactWork& work) {
@@ -182,21 +181,19 @@ private:
 
     // ---- what all batches have in common
 
-    void collect_common(ContactBatch& q, int k, int i, int joint, BlockId block_a, BlockId block_b,
-                        int (&joint_of_column)[ContactBatch::size]) const {
+    void collect_common(ContactBatch& q, int k, int i, int joint, BlockId block_a, BlockId block_b) const {
         const PlacedBlock &a = placed_.block[block_a], &b = placed_.block[block_b];
         q.slot[k] = i;
         q.position_x[k] = a.position.x(), q.position_y[k] = a.position.y();
         q.dx[k] = b.position.x() - a.position.x(), q.dy[k] = b.position.y() - a.position.y();
         q.vax[k] = a.velocity.x(), q.vay[k] = a.velocity.y(), q.spin_a[k] = a.spin;
         q.vbx[k] = b.velocity.x(), q.vby[k] = b.velocity.y(), q.spin_b[k] = b.spin;
-        if (joint == joint_of_column[k]) return;
-        set_joint(q, k, joint);
-        joint_of_column[k] = joint;
+        if (joint != q.joint_of[k]) set_joint(q, k, joint);
     }
 
     void set_joint(ContactBatch& q, int k, int j) const {
         const Joint& joint = model_.joints[j];
+        q.joint_of[k] = j;
         q.kn[k] = joint.kn, q.ks[k] = joint.ks, q.tan_friction[k] = joint.tan_friction;
         q.tan_friction_residual[k] = joint.tan_friction_residual, q.cohesion_residual[k] = joint.cohesion_residual;
         q.weakens[k] = joint.weakens, q.tan_dilation[k] = joint.tan_dilation;
@@ -253,7 +250,7 @@ private:
 
     template <class Fetch>
     void compute_faces(std::span<const FaceSlot> faces, FaceColumns& columns, Fetch&& fetch_next) {
-        const int count = static_cast<int>(faces.size());
+        const int count = faces_.count = static_cast<int>(faces.size());
         for (int k = 0; k < count; ++k) collect(faces[k], k);
         fetch_next();
         kernels_.faces(faces_, columns, dt_, damping_);
@@ -273,7 +270,7 @@ private:
         q.nax[k] = a0.normal.x(), q.nay[k] = a0.normal.y();
         q.b0x[k] = b0.x(), q.b0y[k] = b0.y(), q.b1x[k] = b1.arm.x(), q.b1y[k] = b1.arm.y();
         q.nbx[k] = b1.normal.x(), q.nby[k] = b1.normal.y();
-        collect_common(q, k, f.slot, f.joint, f.block_a, f.block_b, joint_of_face_);
+        collect_common(q, k, f.slot, f.joint, f.block_a, f.block_b);
         if (!convex_) set_ends(k, list_[f.slot]);
     }
 
@@ -310,7 +307,7 @@ private:
         q.bx[k] = l.bx, q.by[k] = l.by, q.nb1x[k] = l.nb1x, q.nb1y[k] = l.nb1y, q.nb2x[k] = l.nb2x, q.nb2y[k] = l.nb2y;
         q.reach[k] = l.reach, q.touch_depth[k] = l.touch_depth;
         const Contact& c = list_[f.slot];
-        collect_common(q, k, f.slot, c.joint, f.block_a, f.block_b, joint_of_corner_);
+        collect_common(q, k, f.slot, c.joint, f.block_a, f.block_b);
         q.load(k, c);
         if (q.count == CornerBatch::size) finish_corners();
     }
@@ -342,9 +339,8 @@ private:
     const ContactIndex& index_;
     const Kernels kernels_;
     const bool convex_ = model_.parts.size() == model_.blocks.size();  // no block has an edge inside it
-    FaceBatch faces_;  // to clear them would cost a scene of a few blocks a tenth of its step
-    CornerBatch corners_;
-    int joint_of_face_[ContactBatch::size], joint_of_corner_[ContactBatch::size];
+    FaceBatch& faces_;
+    CornerBatch& corners_;
     SingleContacts single_;
     FaceTable* table_ = nullptr;           // of this chunk
     std::vector<int>* changed_ = nullptr;  // of this chunk
@@ -352,6 +348,10 @@ private:
 };
 
 }  // namespace
+
+Batches::Batches() {
+    for (FaceBatch::Row* ends : {&faces.a_lo, &faces.a_hi, &faces.b_lo, &faces.b_hi}) std::ranges::fill(*ends, 1.0);
+}
 
 void update_contacts(const Model& model, const Placed& placed, double dt, Pace pace, State& state, ContactIndex& index) {
     static const Kernels kernels{face_kernel(best_vector_unit()), corner_kernel(best_vector_unit())};
@@ -363,12 +363,13 @@ void update_contacts(const Model& model, const Placed& placed, double dt, Pace p
     const int all = static_cast<int>(index.chunks.size());
     const int begin = pace == Pace::fast ? all / 2 : 0, chunks = pace == Pace::all ? all : all / 2;
     std::vector<ContactWork> work(chunks);
+    index.batches.resize(threads_allowed());
     if (chunks == 1) {  // see core/parallel.hpp
-        Evaluator(model, placed, dt, state, index, kernels)(index.chunks[begin], tables[begin], work[0]);
+        Evaluator(model, placed, dt, state, index, index.batches[0], kernels)(index.chunks[begin], tables[begin], work[0]);
     } else {
 #pragma omp parallel
         {
-            Evaluator evaluate(model, placed, dt, state, index, kernels);
+            Evaluator evaluate(model, placed, dt, state, index, index.batches[thread_number()], kernels);
 #pragma omp for schedule(dynamic)
             for (int k = 0; k < chunks; ++k) evaluate(index.chunks[begin + k], tables[begin + k], work[k]);
         }

@@ -90,6 +90,7 @@ public:
     double gain_of_substeps() const;
     double frozen_share() const;  // of the blocks, in the mean of the steps done in this process in which blocks may freeze
     std::string search_choice() const { return search_->choice(); }  // see PairSearch::choice
+    /// s, that the parts of all steps took; from one step in seven where blocks are few, for clocks take time as well.
     const std::array<double, part_names.size()>& seconds() const { return seconds_; }
 
     /// [np] boxes of the convex parts as they are now, without skin; absent ones as in part_boxes.hpp.
@@ -161,7 +162,9 @@ private:
     /// Throws if more than `most` of the largest energy was `gained` (J) since the start, from nowhere.
     void check_energy(const Energies& now, double gained, double most);
     void check_overlaps();
-    void lap(Part part) { seconds_[static_cast<int>(part)] += watch_.lap(); }
+    void lap(Part part) {
+        if (timed_) seconds_[static_cast<int>(part)] += timed_ * watch_.lap();
+    }
 
     const Scenario scenario_;
     const Decisions decisions_;
@@ -199,6 +202,7 @@ private:
     std::int64_t moved_ = 0;           // blocks that were computed, summed over these
     std::array<double, part_names.size()> seconds_{};
     Stopwatch watch_;
+    int timed_ = 1;  // steps that this one stands for; 0 = it is not timed
 };
 
 }  // namespace talus

@@ -119,6 +119,7 @@ TEST_CASE("corners are no pair where faces lie on each other, nor where the over
 TEST_CASE("a batch of corners gives the same bits with every kind of vector register, and as one by one") {
     Random random(5);
     CornerBatch given{};
+    given.count = CornerBatch::size;
     const auto around = [&](double middle, double by) { return middle + by * (2.0 * random.uniform() - 1.0); };
     for (int i = 0; i < CornerBatch::size; ++i) {
         const double towards = around(0.0, 3.0);

@@ -54,6 +54,7 @@ TEST_CASE("a batch of faces gives the same bits with every kind of vector regist
     int loaded = 0, sliding = 0, invalid = 0, kinds = 0;
     for (int trial = 0; trial < 200; ++trial) {
         FaceBatch given{};
+        given.count = FaceBatch::size;
         FaceColumns known{};
         fill(given, known, random);
         FaceBatch plain = given;
