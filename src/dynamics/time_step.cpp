@@ -1,6 +1,7 @@
 #include "dynamics/time_step.hpp"
 
 #include "core/errors.hpp"
+#include "dynamics/motion.hpp"
 
 #include <Eigen/Eigenvalues>
 
@@ -209,6 +210,43 @@ int step_halvings(double stage_step, int halvings_now, double speed, double thin
         if (++halvings > 40) throw DivergenceError("a block moves at " + std::to_string(speed) + " m/s");
     while (halvings > 0 && speed * std::ldexp(stage_step, -(halvings - 1)) < 0.1 * thinnest) --halvings;
     return halvings;
+}
+
+double speed_ahead(const Model& model, double stage_time, double dt) {
+    double speed = 0.0;
+    for (const DrivenBlock& d : model.driven)
+        for (const double t : {stage_time + 0.5 * dt, stage_time + dt})
+            speed = std::max(
+                speed, std::hypot(d.velocity_x(t), d.velocity_y(t)) + std::abs(d.spin(t)) * model.blocks.radius[d.block]);
+    // Those on the boundary press on rock that is pressed back.
+    for (std::size_t i = model.boundary_loads; i < model.loads.size(); ++i)
+        for (const double t : {stage_time, stage_time + dt}) {
+            const Load& l = model.loads[i];
+            const Force f = load_at(l, t, 0.0);
+            const double gained = f.force.norm() / model.blocks.mass[l.block] +
+                                  std::abs(f.torque) / model.blocks.inertia[l.block] * model.blocks.radius[l.block];
+            speed = std::max(speed, gained * dt);
+        }
+    return speed;
+}
+
+std::vector<double> sharp_turns(const Model& model, double dt) {
+    std::vector<double> turns;
+    const auto look = [&](const TimeTable& table) {
+        if (table.is_constant()) return;
+        const double largest = std::abs(std::ranges::max(table.value, {}, [](double v) { return std::abs(v); }));
+        for (const double knot : table.time)
+            for (const double begin : {knot - dt, knot - 0.5 * dt, knot}) {
+                const double ends = 0.5 * (table(begin) + table(begin + dt));
+                if (std::abs(table.mean(begin + 0.5 * dt, dt) - ends) > 0.01 * largest) turns.push_back(knot);
+            }
+    };
+    look(model.gravity_x), look(model.gravity_y);
+    for (const Load& l : model.loads) look(l.force_x), look(l.force_y), look(l.moment);
+    for (const DrivenBlock& d : model.driven) look(d.velocity_x), look(d.velocity_y), look(d.spin);
+    std::ranges::sort(turns);
+    turns.erase(std::unique(turns.begin(), turns.end()), turns.end());
+    return turns;
 }
 
 }  // namespace talus

@@ -42,4 +42,12 @@ double damped_limit(double omega, double beta);
 /// hysteresis, so that it does not change to and fro. Throws DivergenceError beyond 40 halvings.
 int step_halvings(double stage_step, int halvings_now, double speed, double thinnest);
 
+/// m/s, of the fastest point that loads and driving alone bring about within a step of dt from stage_time on, where tables
+/// are straight lines.
+double speed_ahead(const Model& model, double stage_time, double dt);
+
+/// s, ascending: when tables of weight, loads and driven velocities turn so sharply that a step of dt across it, which
+/// knows them at its ends alone, would miss a hundredth of their largest value: pulses, and jumps. Steps have to end there.
+std::vector<double> sharp_turns(const Model& model, double dt);
+
 }  // namespace talus

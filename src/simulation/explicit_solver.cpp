@@ -3,6 +3,8 @@
 #include "dynamics/freeze.hpp"
 #include "dynamics/motion.hpp"
 #include "dynamics/substeps.hpp"
+#include "dynamics/time_step.hpp"
+#include "model/measure.hpp"
 #include "simulation/deep_overlap.hpp"
 #include "simulation/simulation.hpp"
 
@@ -10,7 +12,6 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <sstream>
 
 namespace talus {
 namespace {
@@ -24,11 +25,21 @@ void Simulation::step_explicit(double dt) {
     if (!state_.calm.empty()) freeze_and_wake();
     check_speed();
     if (!scenario_.run.unchecked && time_to_look(state_.total_steps, speed_, dt, stable_.thinnest)) check_overlaps();
-    state_.step_halvings = step_halvings(state_.stage_step, state_.step_halvings, speed_, narrowest_);
+    state_.step_halvings = halvings_for(speed_);
     const double whole = std::ldexp(state_.stage_step, -state_.step_halvings) * (1.0 - 1e-6);
     // Not after a step that was cut: what leapfrog keeps is another sum for each length of step.
     if (dt >= whole && (state_.total_steps % energy_interval == 0 || time_step() < whole))
         check_energy_explicit(energy_explosion);
+}
+
+// What is driven or loaded may get its speed within the step that comes.
+int Simulation::halvings_for(double speed) const {
+    int halvings = step_halvings(state_.stage_step, state_.step_halvings, speed, narrowest_);
+    if (model_.driven.empty() && static_cast<int>(model_.loads.size()) == model_.boundary_loads) return halvings;
+    const auto dt = [&] { return std::ldexp(state_.stage_step, -halvings); };
+    const auto ahead = [&] { return std::max(speed, speed_ahead(model_, state_.stage_time, dt())); };
+    while (dt() > 0.0 && ahead() * dt() > 0.25 * narrowest_) ++halvings;
+    return halvings;
 }
 
 void Simulation::move(double dt) {
@@ -185,6 +196,8 @@ void Simulation::begin_explicit() {
     if (now.until.time && !now.time_step) dt = *now.until.time / std::ceil(*now.until.time / dt);
     state_.stage_step = dt;
     narrowest_ = narrowest(model_, state_);
+    sharp_turns_ = sharp_turns(model_, dt);
+    state_.step_halvings = halvings_for(talus::max_speed(model_, state_));
 }
 
 }  // namespace talus

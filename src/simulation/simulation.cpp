@@ -109,6 +109,7 @@ Simulation::Simulation(const Scenario& scenario, Scene scene, State saved) : Sim
     find_awake();
     stable_ = stable_step(model_, placed_, state_);
     narrowest_ = narrowest(model_, state_);
+    if (method().springs && !timeless()) sharp_turns_ = sharp_turns(model_, state_.stage_step);
 }
 
 Simulation::Simulation(Simulation&&) noexcept = default;
@@ -175,7 +176,9 @@ double Simulation::recorded_time() const {
 double Simulation::time_step() const {
     const double dt = std::ldexp(state_.stage_step, -state_.step_halvings);
     if (!stage().until.time || timeless()) return dt;
-    const double left = *stage().until.time - state_.stage_time;
+    double left = *stage().until.time - state_.stage_time;
+    const auto turn = std::ranges::upper_bound(sharp_turns_, state_.stage_time + 1e-9 * dt);
+    if (turn != sharp_turns_.end()) left = std::min(left, *turn - state_.stage_time);
     return left < dt * (1.0 + 1e-9) ? left : dt;
 }
 
@@ -292,6 +295,7 @@ void Simulation::begin_stage() {
     const double drift = state_.step > 0 ? energy_drift() : 0.0;
     state_.stage_time = 0.0;
     state_.step_halvings = 0;
+    sharp_turns_.clear();
     state_.damping.clear();
     state_.release.clear();
     state_.calm.clear();

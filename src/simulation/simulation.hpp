@@ -162,6 +162,7 @@ private:
     /// Throws if more than `most` of the largest energy was `gained` (J) since the start, from nowhere.
     void check_energy(const Energies& now, double gained, double most);
     void check_overlaps();
+    int halvings_for(double speed) const;
     void lap(Part part) {
         if (timed_) seconds_[static_cast<int>(part)] += timed_ * watch_.lap();
     }
@@ -194,7 +195,8 @@ private:
     std::unique_ptr<rigid::Scratch> rigid_;  // of the rigid solver, while it is at work
 
     StableStep stable_;
-    double narrowest_ = 0.0;  // m, see there
+    double narrowest_ = 0.0;           // m, see there
+    std::vector<double> sharp_turns_;  // s, of the stage; see there
     bool equilibrium_ = false;
     double speed_ = 0.0;
     std::int64_t refreshes_ = 0, boxes_renewed_ = 0, steps_done_ = 0;

@@ -27,6 +27,23 @@ double friction_and_stored(const State& s, const Energies& e) {
 
 }  // namespace
 
+TEST_CASE("a pulse gives all of its impulse, however short it is and wherever in a step it begins") {
+    for (const double begin : {0.0051, 0.0342, 0.0399}) {
+        const auto at = [](double t) { return std::to_string(t); };
+        WholeRun run(
+            scenario_of("gravity: [0, 0]\nmaterials: {rock: {density: 2500}}\n"
+                        "joints: {joint: {normal_stiffness: 1e8, shear_stiffness: 5e7}}\n"
+                        "blocks: [{name: block, rectangle: {corner: [0, 0], size: [2, 2]}}]\n"
+                        "loads: [{block: block, force: {time: [" +
+                        at(begin) + ", " + at(begin + 1e-6) + ", " + at(begin + 0.001) + ", " + at(begin + 0.001001) +
+                        "], x: [0, 1e7, 1e7, 0], y: [0, 0, 0, 0]}}]\nrun: {until: {time: 0.1}}\n"));
+        run.to_the_end();
+        // 1e7 N for 1 ms on 10,000 kg
+        CHECK(run.state().motion.velocity[0].x() == Approx(1.0).epsilon(1e-9));
+        CHECK(std::abs(run.simulation().ledger_error()) < 1e-10 * 5000.0);
+    }
+}
+
 TEST_CASE("the ledger closes to 1e-10 while blocks slide, bounce, are damped, pulled and driven") {
     WholeRun run(scenario_of(R"(
 gravity: [1.5, -9.81]
