@@ -31,8 +31,8 @@ bool Touches::correct(const Bodies& bodies, std::span<const Velocity> before, st
                       double dt, std::vector<Velocity>& displacement) {
     constexpr int sweeps = 20;  // what is left comes in the next step
     struct Want {
-        double least;
-        bool pressed;
+        double least = 0.0;
+        bool pressed = false;
         double push = 0.0;
     };
     std::vector<std::array<Want, 2>> want(touches_.size());
@@ -40,6 +40,7 @@ bool Touches::correct(const Bodies& bodies, std::span<const Velocity> before, st
     for (std::size_t i = 0; i < touches_.size(); ++i) {
         const Touch& c = touches_[i];
         for (int end = 0; end < c.ends; ++end) {
+            if ((end == 0 ? c.k00 : c.k11) == 0.0) continue;
             const double gap = manifold_[i].gap[end];
             Want& w = want[i][end];
             w.pressed = pressed_[2 * i + end];
@@ -66,6 +67,7 @@ bool Touches::correct(const Bodies& bodies, std::span<const Velocity> before, st
             for (int end = 0; end < c.ends; ++end) {
                 Want& w = want[i][end];
                 const double k = end == 0 ? c.k00 : c.k11;
+                if (k == 0.0) continue;
                 double push = w.push - (normal_velocity(c, displacement, end) - w.least) / k;
                 if (!w.pressed) push = std::max(push, 0.0);
                 double change[3] = {0.0, 0.0, 0.0};

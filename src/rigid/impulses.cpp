@@ -13,6 +13,10 @@ namespace {
 // Both ends so close together that rounding decides which carries what: (window / arm)^2 is of this size.
 constexpr double nearly_one = 1e-10;
 
+// Of the softness of two bodies in all directions: what gives less along a joint is held there, but for rounding, which
+// turns rollers by 1e-16. A wedge of 1e-6 rad would be as stiff.
+constexpr double rigid = 1e-12;
+
 // Sweeps after which what is left is solved directly, and direct solutions one after the other. A block on a chip of a
 // millionth of its mass takes four; where ten would be needed sweeps do better.
 constexpr int patience = 30;
@@ -35,6 +39,9 @@ double along_tangent(const Touch& c, const Approach& u) {
     return -c.ny * u.x + c.nx * u.y + c.arm_b[2] * u.spin_b - c.arm_a[2] * u.spin_a;
 }
 
+/// The same for one end by itself; what cannot give way knows no impulse.
+double one_end(double k, double q) { return k > 0.0 ? std::max(-q / k, 0.0) : 0.0; }
+
 /// Normal impulses >= 0 for which q + K p >= 0, and where p > 0 nothing is left of it.
 void two_ends(const Touch& c, double q0, double q1, double p[2]) {
     const double det = c.k00 * c.k11 - c.k01 * c.k01;
@@ -51,8 +58,8 @@ void two_ends(const Touch& c, double q0, double q1, double p[2]) {
         p[1] = 0.0;
         return;
     }
-    p[0] = std::max(-q0 / c.k00, 0.0);
-    p[1] = std::max(-(q1 + c.k01 * p[0]) / c.k11, 0.0);
+    p[0] = one_end(c.k00, q0);
+    p[1] = one_end(c.k11, q1 + c.k01 * p[0]);
 }
 
 /// One contact by itself; returns the largest change of a relative velocity, m/s.
@@ -65,7 +72,7 @@ double solve_one(Touch& c, std::span<const Softness> bodies, std::span<Velocity>
         two_ends(c, u0 - c.least[0] - c.k00 * old[0] - c.k01 * old[1], u1 - c.least[1] - c.k01 * old[0] - c.k11 * old[1],
                  c.p);
     } else {
-        c.p[0] = std::max(old[0] - (u0 - c.least[0]) / c.k00, 0.0);
+        c.p[0] = one_end(c.k00, u0 - c.least[0] - c.k00 * old[0]);
     }
     double change[3] = {c.p[0] - old[0], c.p[1] - old[1], 0.0};
     if (change[0] != 0.0 || change[1] != 0.0) apply(c, change, bodies, v);
@@ -96,6 +103,11 @@ void prepare(Touch& c, std::span<const Softness> bodies) {
     c.k01 = along_n + turning(0, 1);
     c.k11 = along_n + turning(1, 1);
     c.kt = along_t + turning(2, 2);
+    const auto reach = [](const double arm[3]) { return arm[0] * arm[0] + arm[1] * arm[1] + arm[2] * arm[2]; };
+    c.barely = rigid * (x + y + reach(c.arm_a) * a.spin + reach(c.arm_b) * b.spin);
+    c.kt = std::max(c.kt, c.barely);  // friction of what slides along all the same is its bound
+    if (c.k00 <= c.barely) c.k00 = c.k01 = 0.0;
+    if (c.ends == 2 && c.k11 <= c.barely) c.k11 = c.k01 = 0.0;
 }
 
 void apply(const Touch& c, const double p[3], std::span<const Softness> bodies, std::span<Velocity> velocity) {

@@ -14,10 +14,6 @@ struct Softness {
     double x = 0.0, y = 0.0, spin = 0.0;  // 1/kg, 1/kg, 1/(kg m2): inverse mass and inertia; 0 = does not give way
 };
 
-struct Sticking {  // kg, impulses at both ends and along the tangent that change their velocities by 1 m/s
-    double i00 = 0.0, i01 = 0.0, i02 = 0.0, i11 = 0.0, i12 = 0.0, i22 = 0.0;
-};
-
 /// Two bodies at one manifold. Impulses act on b, and against a: p[0], p[1] along the normal at both ends, p[2] along
 /// perp(normal), the same line for both ends.
 struct Touch {
@@ -26,9 +22,9 @@ struct Touch {
     double nx, ny;                        // unit, from a to b
     double arm_a[3];                      // m, arm x direction, of each impulse about the centroid of the body
     double arm_b[3];                      // m
-    double k00, k01, k11;                 // 1/kg, velocity of approach per impulse at both ends
-    double kt;                            // 1/kg, the same along perp(normal)
-    Sticking sticking;                    // inverse of all of these
+    double k00, k01, k11;                 // 1/kg, velocity of approach per impulse at both ends; k00, k11 = 0: no impulse
+    double kt;                            // 1/kg, the same along perp(normal), no less than `barely`
+    double barely;                        // 1/kg, what is not softer does not give way: held, on rollers or driven that way
     double least[2];                      // m/s, velocity along the normal after the impulse is no less than this
     double sticks;                        // m/s, velocity along perp(normal) after the impulse, where friction is enough
     double friction;                      // 1, tangent
@@ -37,7 +33,7 @@ struct Touch {
     double earlier[3] = {0.0, 0.0, 0.0};  // N s, what acted before an impact ended it, whatever the velocities after it
 };
 
-/// Fills k00, k01, k11, kt and `sticking` from ends, directions, arms and bodies.
+/// Fills k00, k01, k11, kt and `barely` from ends, directions, arms and bodies.
 void prepare(Touch& touch, std::span<const Softness> bodies);
 
 struct Convergence {

@@ -7,6 +7,8 @@
 #include "support/whole_run.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -164,4 +166,40 @@ TEST_CASE("rigid: free blocks that collide and rub keep their momentum, and near
     CHECK(change.head<2>().norm() < 1e-12 * 2500.0 * 3.0);
     // Bodies are put on each other while they move past each other: an error of the order of the step, in impacts only.
     CHECK(std::abs(change.z()) < 0.01 * 2500.0 * 3.0);
+}
+
+// A column on rollers, and blocks that slide past each other along the only axis they have: no impulse between two of them
+// can move them along the joint, or across it.
+TEST_CASE("rigid: joints that cannot give way along or across stay in balance") {
+    WholeRun rollers(scenario_of(R"(
+gravity: [0, -9.81]
+materials: {rock: {density: 2600}}
+joints: {j: {normal_stiffness: 1e9, shear_stiffness: 1e9, friction_angle_deg: 30}}
+rock:
+  outline: [[0, 0], [6, 0], [6, 4], [0, 4]]
+  joint_sets: [{angle_deg: 0, spacing: 1}, {angle_deg: 90, spacing: 2}]
+  held: {left: roller, right: roller, bottom: true}
+run: {until: {time: 0.5}, solver: rigid}
+)"));
+    rollers.to_the_end();
+    for (BlockId b = 0; b < rollers.model().blocks.size(); ++b)
+        CHECK((rollers.state().motion.position[b] - rollers.state().start_position[b]).norm() < 1e-8);
+
+    // A shear box: driven from rest to 0.01 m/s in 0.1..0.5 s, it slips by 0.002 m against mu m g = tan 30 x 1300 x 9.81 N.
+    WholeRun box(scenario_of(R"(
+gravity: [0, -9.81]
+materials: {rock: {density: 2600}}
+joints: {j: {normal_stiffness: 1e9, shear_stiffness: 1e9, friction_angle_deg: 30}}
+blocks:
+  - {name: below, rectangle: {corner: [-5, -1], size: [11, 1]}, held: true}
+  - {name: above, rectangle: {corner: [0, 0], size: [1, 0.5]}, held: [false, false, true], driven: {velocity_x: {time: [0, 0.1, 0.5], value: [0, 0, 0.01]}}}
+  - {name: guided, rectangle: {corner: [3, 0], size: [1, 0.5]}, held: [true, false, true]}
+  - {name: past it, rectangle: {corner: [4, 0], size: [1, 0.5]}, held: [true, false, true]}
+run: {until: {time: 0.5}, solver: rigid}
+)"));
+    box.to_the_end();
+    const State& state = box.state();
+    CHECK(state.contacts.list[0].slip == Approx(0.002).epsilon(0.01));
+    CHECK(state.ledger.friction == Approx(std::tan(std::numbers::pi / 6) * 1300 * 9.81 * 0.002).epsilon(0.01));
+    for (const BlockId b : {2, 3}) CHECK((state.motion.position[b] - state.start_position[b]).norm() < 1e-8);
 }
