@@ -31,7 +31,7 @@ struct Blocks {
 struct Parts {
     std::vector<int> block;         // [np]
     std::vector<int> first_corner;  // [np+1]
-    std::vector<double> thickness;  // [np] m, smallest width of the part
+    std::vector<double> thickness;  // [np] m, smallest width of the part; of a tiny ear, that of its block
     int size() const { return static_cast<int>(block.size()); }
 };
 

@@ -129,17 +129,22 @@ Reading of_support(const ProbeSpec& spec, const Model& model, const State& state
     };
 }
 
+// Axes along which it is neither held nor driven.
+Vec2 free(const Model& model, BlockId b) { return (model.blocks.inv_mass[b].array() > 0.0).cast<double>(); }
+
 Vec2 momentum(const Model& model, const State& state) {
     Vec2 sum = Vec2::Zero();
-    for (BlockId b = 0; b < model.blocks.size(); ++b) sum += model.blocks.mass[b] * state.motion.velocity[b];
+    for (BlockId b = 0; b < model.blocks.size(); ++b)
+        sum += model.blocks.mass[b] * free(model, b).cwiseProduct(state.motion.velocity[b]);
     return sum;
 }
 
 double angular_momentum(const Model& model, const State& state) {
     double sum = 0.0;
     for (BlockId b = 0; b < model.blocks.size(); ++b)
-        sum += model.blocks.inertia[b] * state.motion.spin[b] +
-               model.blocks.mass[b] * cross(state.motion.position[b] + model.origin, state.motion.velocity[b]);
+        sum += (model.blocks.inv_inertia[b] > 0.0 ? model.blocks.inertia[b] * state.motion.spin[b] : 0.0) +
+               model.blocks.mass[b] *
+                   cross(state.motion.position[b] + model.origin, free(model, b).cwiseProduct(state.motion.velocity[b]));
     return sum;
 }
 

@@ -68,6 +68,19 @@ void mark_internal_edges(BlockId block, Model& model) {
             if (faces(model.corners, i, j)) model.corners.internal[i] = 1;
 }
 
+// An ear that a sliver left on the block it was merged with is no wall that something could pass through: blocks on both
+// sides of it meet by closing their joints. It takes the thickness of its block, or every step would be too long for it.
+// Twice or half of these shares are still far from what anybody draws, and above what the default of `slivers` leaves.
+void overlook_ears(const std::vector<Polygon>& shape, double area, Model& model) {
+    constexpr double of_the_area = 1e-4, of_the_thickness = 1e-3;
+    const auto first = model.parts.thickness.end() - static_cast<std::ptrdiff_t>(shape.size());
+    const double thickest = *std::max_element(first, model.parts.thickness.end());
+    for (std::size_t k = 0; k < shape.size(); ++k) {
+        double& thickness = first[static_cast<std::ptrdiff_t>(k)];
+        if (thickness < of_the_thickness * thickest && signed_area(shape[k]) < of_the_area * area) thickness = thickest;
+    }
+}
+
 }  // namespace
 
 std::vector<Vec2> fill_blocks(const std::vector<Shape>& shapes, std::span<const double> density, Model& model) {
@@ -94,7 +107,9 @@ std::vector<Vec2> fill_blocks(const std::vector<Shape>& shapes, std::span<const 
         }
         blocks.first_part.push_back(model.parts.size());
         blocks.radius.push_back(radius(shape.parts, size.centroid));
-        if (shape.parts.size() > 1) mark_internal_edges(block, model);
+        if (shape.parts.size() == 1) continue;
+        mark_internal_edges(block, model);
+        overlook_ears(shape.parts, size.area, model);
     }
     return given;
 }

@@ -38,7 +38,7 @@ double thickness(const Model& model, PartId part) {
             behind = std::max(behind, model.corners.offset[k] - model.corners.normal[k].dot(model.corners.arm[j]));
         least = std::min(least, behind);
     }
-    return std::isfinite(least) ? least : model.parts.thickness[part];
+    return std::isfinite(least) ? std::max(least, model.parts.thickness[part]) : model.parts.thickness[part];
 }
 
 // m, largest distance by which an edge that bounds its block keeps the parts apart; < 0: least depth.

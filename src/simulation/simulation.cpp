@@ -22,8 +22,9 @@ namespace {
 
 // Blocks: below, reading clocks between the parts of a step takes more than some hundredths of it.
 constexpr int a_clock_counts = 100;
-constexpr int calm_interval = 10;  // steps between looks at the unbalanced ratio
-constexpr int calm_needed = 3;     // looks in a row below the limit: one may be a turning point of the motion
+constexpr int calm_interval = 10;    // steps between looks at the unbalanced ratio
+constexpr int stay_interval = 1000;  // steps between looks whether a block has left the scene
+constexpr int calm_needed = 3;       // looks in a row below the limit: one may be a turning point of the motion
 
 StageSpec last_stage(const Scenario& scenario) {
     StageSpec stage;
@@ -135,6 +136,7 @@ void Simulation::step() {
     if (timed_) watch_.lap();
     (this->*method().step)(dt);
     if (look_is_due(state_)) look_at_blocks();
+    if (!timeless()) look_for_calm();
     lap(Part::move);
 }
 
@@ -304,7 +306,6 @@ void Simulation::begin_stage() {
     state_.substeps = 1;
     find_awake();
     state_.calm_checks = 0;
-    equilibrium_ = false;
     const std::vector<Joint> before = model_.joints;
     apply_stage();
     // The shear force of a contact stays, what it stores goes with its stiffness.
@@ -350,18 +351,41 @@ bool Simulation::end_stage() {
     return true;
 }
 
-bool Simulation::stage_over() {
-    if (timeless()) {
-        equilibrium_ = state_.statics.now.reached != 0;
-        return static_over();
-    }
+bool Simulation::stage_over() const {
+    if (timeless()) return static_over();
     const Until& until = stage().until;
-    if (ended_by_verdict()) return true;
-    if (until.time && state_.stage_time >= *until.time * (1.0 - 1e-12)) return true;
-    if (!until.equilibrium || state_.step % calm_interval != 0 || state_.stage_time == 0.0) return false;
+    if (ended_by_verdict() || reached_equilibrium()) return true;
+    return until.time && state_.stage_time >= *until.time * (1.0 - 1e-12);
+}
+
+bool Simulation::reached_equilibrium() const {
+    return timeless() ? state_.statics.now.reached != 0 : state_.calm_checks >= calm_needed;
+}
+
+void Simulation::look_for_calm() {
+    const Until& until = stage().until;
+    if (!until.equilibrium || state_.step % calm_interval != 0) return;
     state_.calm_checks = unbalanced_ratio(model_, state_) < *until.equilibrium ? state_.calm_checks + 1 : 0;
-    equilibrium_ = state_.calm_checks >= calm_needed;
-    return equilibrium_;
+    if (!until.time && state_.step % stay_interval == 0) check_that_it_stays();
+}
+
+// A stage that lasts until all rest has no end when a block falls out of the scene.
+void Simulation::check_that_it_stays() const {
+    Vec2 low = model_.blocks.start.front(), high = low;
+    for (const Vec2& p : model_.blocks.start) low = low.cwiseMin(p), high = high.cwiseMax(p);
+    const double reach = (high - low).norm() + std::ranges::max(model_.blocks.radius);
+    for (BlockId b = 0; b < model_.blocks.size(); ++b) {
+        const Vec2 way = state_.motion.position[b] - model_.blocks.start[b];
+        const bool goes_on =
+            way.dot(state_.motion.velocity[b]) > 0.1 * std::sqrt(reach) * way.norm();  // m/s, of a fall of reach
+        if (state_.removed[b] || !goes_on || way.norm() < 2.0 * reach) continue;
+        std::ostringstream text;
+        text << "stage " << stage().name << " comes to no equilibrium: block " << b;
+        if (!model_.blocks.name[b].empty()) text << " `" << model_.blocks.name[b] << "`";
+        text << " has left the scene, is " << way.norm() << " m from its place, and goes on; give it something to rest on, "
+             << "delete it, or end the stage by until.time";
+        throw DivergenceError(text.str());
+    }
 }
 
 // ---- numbers --------------------------------------------------------------------------------------------------------

@@ -53,8 +53,8 @@ public:
     /// Resets what the stage asks for and moves on; false if it was the last one.
     bool end_stage();
 
-    void step();        // one time step; the last one of a timed stage is cut to end exactly
-    bool stage_over();  // by time, by equilibrium (looked at every 10 steps), or by a verdict
+    void step();              // one time step; the last one of a timed stage is cut to end exactly
+    bool stage_over() const;  // by time, by equilibrium (looked at every 10 steps), or by a verdict
 
     const Scenario& scenario() const { return scenario_; }  // with nothing left open
     const Decisions& decisions() const { return decisions_; }
@@ -71,7 +71,7 @@ public:
     double time_step() const;                                          // s, of the next step (before the cut at the end)
     bool recorded() const { return state_.stage >= first_recorded_; }  // no later stage sets the clock back
     double recorded_time() const;  // s, length of the recorded stages as far as it is given
-    bool reached_equilibrium() const { return equilibrium_; }
+    bool reached_equilibrium() const;
     bool ended_by_verdict() const;  // it is certain whether the blocks stand, and the stage was to end then
     StabilityVerdict verdict() const;
     Energies energies() const;
@@ -161,6 +161,8 @@ private:
     void check_speed() const;
     /// Throws if more than `most` of the largest energy was `gained` (J) since the start, from nowhere.
     void check_energy(const Energies& now, double gained, double most);
+    void look_for_calm();
+    void check_that_it_stays() const;
     void check_overlaps();
     int halvings_for(double speed) const;
     void lap(Part part) {
@@ -197,7 +199,6 @@ private:
     StableStep stable_;
     double narrowest_ = 0.0;           // m, see there
     std::vector<double> sharp_turns_;  // s, of the stage; see there
-    bool equilibrium_ = false;
     double speed_ = 0.0;
     std::int64_t refreshes_ = 0, boxes_renewed_ = 0, steps_done_ = 0;
     std::int64_t freezing_steps_ = 0;  // in which blocks may freeze

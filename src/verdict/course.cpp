@@ -47,8 +47,9 @@ double mean_size(const Model& model, const State& state) {
     return blocks > 0 ? std::sqrt(area / blocks) : 1.0;
 }
 
+// m, in a window: no motion. Where joints give much, a block that goes visibly is on its way all the same.
 double rest_of(const Model& model, const Course& course, BlockId b) {
-    return std::max(no_motion * course.give, resolved * size_of(model, b));
+    return std::clamp(no_motion * course.give, resolved * size_of(model, b), visible * size_of(model, b));
 }
 
 /// What joints have closed: the most of one contact, and the mean settlement of all blocks. The springs of a scene under its
