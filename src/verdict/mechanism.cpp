@@ -26,6 +26,19 @@ bool set_out_with_slip(const Model& model, const State& state, const Footing& fo
     return found == SetOut::not_yet ? slips(model, state, footing, base) : found == SetOut::with_slip;
 }
 
+// Whether there is one block alone that it touches: then nothing but its own weight turns it.
+bool is_alone(const Model& model, const State& state, BlockId b) {
+    BlockId other = -1;
+    for (const Contact& c : state.contacts.list) {
+        const BlockId a = model.parts.block[c.part_a], q = model.parts.block[c.part_b];
+        if (!c.touching || (a != b && q != b)) continue;
+        const BlockId touched = a == b ? q : a;
+        if (other >= 0 && touched != other) return false;
+        other = touched;
+    }
+    return true;
+}
+
 double turn_of(const State& state, BlockId b) { return state.motion.angle[b] - state.start_angle[b]; }
 
 // A rider turns like its base when it is part of what leans over; it does not when a small block rolls beneath it.
@@ -33,7 +46,8 @@ Mechanism on_its_base(const Model& model, const State& state, BlockId rider, Blo
     const bool turns_along =
         turn_of(state, rider) * turn_of(state, base) >= half * turn_of(state, base) * turn_of(state, base);
     const BlockId b = turns_along ? base : rider;
-    if (turning_way(model, b, turn_of(state, b)) <= a_part * way_gone(model, state, b)) return Mechanism::slide;
+    const double least = (is_alone(model, state, b) ? a_part_alone : a_part) * way_gone(model, state, b);
+    if (turning_way(model, b, turn_of(state, b)) <= least + no_motion * state.course.give) return Mechanism::slide;
     return with_slip ? Mechanism::slide_and_topple : Mechanism::topple;
 }
 

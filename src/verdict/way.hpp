@@ -10,6 +10,8 @@ namespace talus {
 // hundredths of their way; half of it would take some of these for toppling, twice of it would move the boundary between
 // sliding and both, of a single block on a plane, by a third of a degree.
 inline constexpr double a_part = 0.05;
+/// Of one that touches nothing but what it slides on: it does not turn at all, unless its weight turns it.
+inline constexpr double a_part_alone = 0.005;
 /// Not held, driven or deleted.
 bool free_to_move(const Model& model, const State& state, BlockId b);
 
