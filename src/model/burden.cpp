@@ -22,6 +22,18 @@ double largest(const TimeTable& x, const TimeTable& y) {
     return most;
 }
 
+/// Largest mean over any `span` (s) that begins, ends or has its middle at a point of the tables.
+double largest_mean(const TimeTable& x, const TimeTable& y, double span) {
+    double most = 0.0;
+    for (const TimeTable* table : {&x, &y})
+        for (const double t : table->time)
+            for (const double side : {-0.5, 0.0, 0.5}) {
+                const double middle = std::max(t + side * span, 0.5 * span);
+                most = std::max(most, std::hypot(x.mean(middle, span), y.mean(middle, span)));
+            }
+    return most;
+}
+
 double speed_of(const Model& model, const State& state, BlockId b) {
     return state.motion.velocity[b].norm() + std::abs(state.motion.spin[b]) * model.blocks.radius[b];
 }
@@ -115,6 +127,31 @@ Burden burden_of(const Scenario& scenario, const Model& model, const State& stat
         burden.stress += largest(load.force_x, load.force_y) / std::sqrt(blocks.area[load.block]);
     if (blocks_fly(model, state)) burden.speed = std::sqrt(fastest * fastest + 2.0 * burden.gravity * height(model));
     return burden;
+}
+
+double step_of_fall(const Model& model, std::span<const Load> loads, double share) {
+    const Blocks& blocks = model.blocks;
+    double smallest = std::numeric_limits<double>::infinity();
+    for (BlockId b = 0; b < blocks.size(); ++b)
+        if (!blocks.held(b)) smallest = std::min(smallest, blocks.area[b]);
+    const double size = std::isfinite(smallest) ? std::sqrt(smallest) : 1.0;
+    const auto within = [&](double gravity) { return share * std::sqrt(size / std::max(gravity, 1.0)); };
+    const auto longest = [&](double dt) {  // if loads and weight act as in the worst step of this length
+        const double gravity = largest_mean(model.gravity_x, model.gravity_y, dt);
+        std::vector<double> pull(blocks.size(), gravity);  // m/s2, of the farthest corner
+        double step = within(gravity);
+        for (const Load& load : loads) {
+            const BlockId b = load.block;
+            if (blocks.held(b)) continue;
+            pull[b] += largest_mean(load.force_x, load.force_y, dt) / blocks.mass[b] +
+                       largest_mean(load.moment, {}, dt) / blocks.inertia[b] * blocks.radius[b];
+            step = std::min(step, share * std::sqrt(std::sqrt(blocks.area[b]) / std::max(pull[b], 1.0)));
+        }
+        return step;
+    };
+    double dt = within(std::hypot(model.gravity_x(0.0), model.gravity_y(0.0)));
+    for (double step = longest(dt); step < dt; step = longest(dt)) dt = std::max(step, 0.5 * dt);
+    return dt;
 }
 
 bool blocks_fly(const Model& model, const State& state) {

@@ -6,6 +6,7 @@
 #include "scenario/scenario.hpp"
 
 #include <algorithm>
+#include <span>
 
 namespace talus {
 
@@ -29,6 +30,11 @@ struct Burden {
 
 /// `state`: at the very start.
 Burden burden_of(const Scenario& scenario, const Model& model, const State& state);
+
+/// s, the longest step within `share` of the time in which weight brings the smallest free block, or a load its own block,
+/// through its size (square root of its area). Tables count with their mean over a step: a blow that is shorter gives a
+/// speed, and no more.
+double step_of_fall(const Model& model, std::span<const Load> loads, double share);
 
 /// Whether some block can fly: it stands on nothing that stands, and falls or is thrown; or is thrown among others.
 bool blocks_fly(const Model& model, const State& state);

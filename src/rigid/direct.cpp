@@ -29,8 +29,7 @@ void DirectSolver::list_rows(std::span<const Touch> touches, std::span<const Sof
         };
         for (int end = 0; end < c.ends; ++end)
             if (c.p[end] > 0.0) add(end, c.nx, c.ny, end == 0 ? c.k00 : c.k11, c.least[end]);
-        const double bound = c.friction * (c.p[0] + c.p[1]) + c.cohesion;
-        if (std::abs(c.p[2]) < bound && c.kt > c.barely) add(2, -c.ny, c.nx, c.kt, c.sticks);
+        if (!c.slips && c.kt > c.barely) add(2, -c.ny, c.nx, c.kt, c.sticks);
     }
     unknown_.assign(bodies.size(), -1);
     unknowns_ = 0;

@@ -24,12 +24,12 @@ bool Touches::moved_by_impact(const Bodies& bodies, int body) const {
     return impact_[body] <= 1.0 && soft.x + soft.y + soft.spin > 0.0;
 }
 
-// What closes faster than half a step of free fall hits at a time within the step, and bounces, if it does, from two steps
-// on: what rests must not. Until then all else acts on the two bodies as before: a corner about which a block has turned
-// carries weight until the next one lands, or the block would lose the share of a step each time. The impulse acts where the
-// two are then: with the arms of the middle of the step a block that rocks would lose a share of its spin that depends on
-// where in the step it lands.
-void Touches::find_impacts(const Bodies& bodies, std::span<const Velocity> before, double fall, double dt) {
+// What closes faster than by what it gains in half a step hits at a time within the step, and bounces, if it does, from two
+// steps on: what rests must not. Until then all else acts on the two bodies as before: a corner about which a block has
+// turned carries weight until the next one lands, or the block would lose the share of a step each time. The impulse acts
+// where the two are then: with the arms of the middle of the step a block that rocks would lose a share of its spin that
+// depends on where in the step it lands.
+void Touches::find_impacts(const Bodies& bodies, std::span<const Velocity> before, double dt) {
     impact_.assign(bodies.size(), none);
     ahead_.assign(touches_.size(), 0.0);
     landed_.assign(2 * touches_.size(), 0.0);
@@ -43,10 +43,13 @@ void Touches::find_impacts(const Bodies& bodies, std::span<const Velocity> befor
         const double slowest = rebound_[i] > 0.0 ? 4.0 : 1.0;
         for (int end = 0; end < c.ends; ++end) {
             const double gap = manifold_[i].gap[end], change = normal_velocity(c, before, end);
-            const double approach = -std::min(change, normal_velocity(c, bodies.velocity, end));
-            const double bent = std::abs(bend(manifold_[i], bodies, from_a_[i], c, end).x());
+            const double approach = -std::min(change, normal_velocity(c, ahead_of_contacts(i, bodies), end));
+            const double bent = std::abs(bend(manifold_[i], bodies, before, from_a_[i], c, end).x());
             const double way = at_the_latest * dt * approach + 0.125 * bent * dt * dt;  // in half of the step
-            hits[end] = !(c.p[end] > 0.0 || -change * dt <= slowest * fall || std::abs(gap) > way);
+            // What bounces does so though it is inside already: two tips that pass each other are seen when one is in a
+            // face.
+            const bool in_reach = gap <= way && (gap >= -way || rebound_[i] > 0.0);
+            hits[end] = in_reach && c.p[end] == 0.0 && -change * dt > slowest * near_[2 * i + end];
             if (!hits[end]) continue;
             // What else carries a block that does not bounce, such as the corner it rocks about, is not known here.
             const double gained = rebound_[i] > 0.0 ? normal_velocity(c, bodies.velocity, end) - change : 0.0;
@@ -76,6 +79,7 @@ void Touches::find_impacts(const Bodies& bodies, std::span<const Velocity> befor
         for (int k = 0; k < 3 && share <= 1.0; ++k) {
             c.earlier[k] = share * c.p[k];
             c.p[k] -= c.earlier[k];
+            c.along = c.against = 1.0;
         }
     }
     find_uneven(bodies, before);

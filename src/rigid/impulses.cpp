@@ -76,8 +76,10 @@ double solve_one(Touch& c, std::span<const Softness> bodies, std::span<Velocity>
     }
     double change[3] = {c.p[0] - old[0], c.p[1] - old[1], 0.0};
     if (change[0] != 0.0 || change[1] != 0.0) apply(c, change, bodies, v);
-    const double bound = c.friction * (c.p[0] + c.p[1]) + c.cohesion;
-    c.p[2] = std::clamp(old[2] - (along_tangent(c, approach(c, v)) - c.sticks) / c.kt, -bound, bound);
+    const double holds = old[2] - (along_tangent(c, approach(c, v)) - c.sticks) / c.kt;
+    const double bound = c.friction * (c.p[0] + c.p[1]) + c.cohesion, least = -c.against * bound, most = c.along * bound;
+    c.p[2] = std::clamp(holds, least, most);
+    c.slips = c.p[2] <= least || c.p[2] >= most;
     const double sheared[3] = {0.0, 0.0, c.p[2] - old[2]};
     if (sheared[2] != 0.0) apply(c, sheared, bodies, v);
     const double d0 = change[0] * c.k00, d1 = change[1] * c.k11, dt = sheared[2] * c.kt;

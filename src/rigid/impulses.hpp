@@ -28,6 +28,8 @@ struct Touch {
     double least[2];                      // m/s, velocity along the normal after the impulse is no less than this
     double sticks;                        // m/s, velocity along perp(normal) after the impulse, where friction is enough
     double friction;                      // 1, tangent
+    double along = 1.0, against = 1.0;    // shares of friction that may act along perp(normal), and against it
+    bool slips = false;                   // friction is not enough
     double cohesion;                      // N s, what may act along perp(normal) without any pressure
     double p[3] = {0.0, 0.0, 0.0};        // N s
     double earlier[3] = {0.0, 0.0, 0.0};  // N s, what acted before an impact ended it, whatever the velocities after it

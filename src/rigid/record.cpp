@@ -68,7 +68,7 @@ void Touches::record(const Model& model, const Placed& placed, const Bodies& bod
         const double u0 = tangent_velocity(*t, before), u1 = tangent_velocity(*t, after);
         c.touching = c.alive = 1;
         c.struck = moved_by_impact(bodies, t->a) || moved_by_impact(bodies, t->b);
-        c.sliding = std::abs(t->p[2]) >= bound * (1.0 - 1e-9) && std::abs(u1) > resolution;
+        c.sliding = (t->slips || std::abs(t->p[2]) >= bound * (1.0 - 1e-9)) && std::abs(u1) > resolution;
         c.edge_a = m->count == 2 ? m->edge_a : -1;
         c.edge_b = m->count == 2 ? m->edge_b : -1;
         c.length = m->count == 2 ? m->length : 0.0;

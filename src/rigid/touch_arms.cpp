@@ -28,8 +28,9 @@ void set_arms(const Manifold& m, const Vec2& from_a, const Bodies& bodies, const
     prepare(c, bodies.softness);
 }
 
-Vec2 bend(const Manifold& m, const Bodies& bodies, const Vec2& from_a, const Touch& c, int end) {
-    const Velocity &a = bodies.velocity[c.a], &b = bodies.velocity[c.b];
+Vec2 bend(const Manifold& m, const Bodies& bodies, std::span<const Velocity> v, const Vec2& from_a, const Touch& c,
+          int end) {
+    const Velocity &a = v[c.a], &b = v[c.b];
     if (a.spin == 0.0 && b.spin == 0.0) return Vec2::Zero();
     const Vec2 arm_a = m.point[end] + from_a, arm_b = arm_a - (bodies.position[c.b] - bodies.position[c.a]);
     const Vec2 inward = a.spin * a.spin * arm_a - b.spin * b.spin * arm_b;

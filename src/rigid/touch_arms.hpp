@@ -28,11 +28,12 @@ struct Ahead {          // of the middle of the step, as both bodies moved befor
 /// Directions and arms of a touch; `from_a`: of the centroid of its block a from that of the body (m).
 void set_arms(const Manifold& m, const Vec2& from_a, const Bodies& bodies, const Ahead& ahead, Touch& c);
 
-/// m/s2, of the corner against the face along the normal and perp(normal), while both bodies move on as they do. A corner
+/// m/s2, of the corner against the face along the normal and perp(normal), while both bodies move on at the velocities `v`
+/// they had before the step: those with loads but without contacts may spin as the block never will. A corner
 /// goes along an arc: a velocity that has no part along the normal now would lift it off the face or press it in within the
 /// step, and one without a part along the face would let it slip. Blocks that turn about a corner are of second order by
 /// this.
-Vec2 bend(const Manifold& m, const Bodies& bodies, const Vec2& from_a, const Touch& c, int end);
+Vec2 bend(const Manifold& m, const Bodies& bodies, std::span<const Velocity> v, const Vec2& from_a, const Touch& c, int end);
 
 /// Its cohesion counts: it has slipped, or nothing of it is left.
 inline bool fits_bond(const Model& model, const Contact& c) { return c.face >= 0 && model.faces[c.face].bonded; }

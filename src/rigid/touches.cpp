@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace talus::rigid {
 namespace {
@@ -18,6 +19,12 @@ constexpr int few = 1000;  // contacts: one thread has looked at them by the tim
 // Came in: of an overlap above this it counts through which face the two came together. Resting and sliding blocks stay
 // below a hundredth of it; ten times as much, and steps that are a thousandth as high as a block are run over.
 constexpr double touching = 1e-9, narrow = 1e-5, came_in = 1e-4;
+
+// A block of width w and radius of inertia r that rocks brings its corner down with 1.5 (w2 / 12 r2) of free fall, its
+// neighbours may bring it down faster. From blocks that are less than two and a half times as high as wide this is free
+// fall, and they are taken so: half of it and collapsing arches, whose impacts are in the order of free fall, follow these
+// one by one.
+constexpr double rocking_fall = 8.0 / 12.0;
 
 Vec2 velocity_at(const Velocity& v, const Vec2& arm) { return Vec2(v.x, v.y) + v.spin * perp(arm); }
 
@@ -121,15 +128,7 @@ void Touches::find(const Model& model, const Placed& placed, const State& state,
         c.ends = m.count;
         from_a_.push_back(placed.block[block_a].position - bodies.position[c.a]);
         set_arms(m, from_a_.back(), bodies, {}, c);
-        end_.resize(2 * touches_.size() + 2);
-        for (int end = 0; end < m.count; ++end) {
-            const double u = normal_velocity(c, bodies.velocity, end), gap = m.gap[end];
-            const bool closes = gap + 0.5 * dt * u <= 0.0 || gap <= fall;
-            const Vec2 bent = bend(m, bodies, from_a_.back(), c, end);
-            c.least[end] = closes ? -0.5 * dt * bent.x() : -2.0 * gap / dt;
-            if (end == nearest(m)) c.sticks = -0.5 * dt * bent.y();
-            end_[2 * touches_.size() + end] = closes ? End::meets : End::comes_near;
-        }
+        c.sticks = -0.5 * dt * bend(m, bodies, before, from_a_.back(), c, nearest(m)).y();
         c.friction = known.slipped && joint.weakens ? joint.tan_friction_residual : joint.tan_friction;
         if (fits_bond(model, known)) c.cohesion = cohesion(model, state, known, m) * dt;
         take_over(known, m, dt, c);
@@ -138,7 +137,64 @@ void Touches::find(const Model& model, const Placed& placed, const State& state,
         manifold_.push_back(m);
         slot_.push_back(i);
     }
-    find_impacts(bodies, before, fall, dt);
+    carried_ = bodies.velocity;
+    for (const Touch& c : touches_) apply(c, c.p, bodies.softness, carried_);
+    find_turns(state, before);
+    judge_ends(model, state, bodies, before, fall, dt);
+    find_impacts(bodies, before, dt);
+}
+
+// What slides at the start of the step, and would go the other way at its end if friction went on as before, comes to rest
+// at the share f of it. Friction opposes it in full until then; only from then on it may have any other size. Else what
+// slides up a slope would stay until the next step where it comes to rest, and not turn back at once: an error of first
+// order.
+void Touches::find_turns(const State& state, std::span<const Velocity> before) {
+    for (std::size_t i = 0; i < touches_.size(); ++i) {
+        Touch& c = touches_[i];
+        if (!state.contacts.list[slot_[i]].sliding) continue;
+        const double slides = tangent_velocity(c, before) + c.sticks, end = tangent_velocity(c, carried_) - c.sticks;
+        if (slides * c.p[2] >= 0.0 || slides * end >= 0.0) continue;
+        (slides > 0.0 ? c.along : c.against) = 1.0 - 2.0 * slides / (slides - end);
+    }
+}
+
+double Touches::share_of_fall(const Model& model, const State& state, const Bodies& bodies, std::size_t touch) const {
+    if (rebound_[touch] > 0.0) return 1.0;
+    const Contact& known = state.contacts.list[slot_[touch]];
+    const Touch& c = touches_[touch];
+    double share = 1.0;
+    for (const auto& [body, part] : {std::pair(c.a, known.part_a), std::pair(c.b, known.part_b)}) {
+        const Softness& soft = bodies.softness[body];
+        const double width = model.parts.thickness[part];
+        share = std::min(share, soft.spin > 0.0 && soft.x > 0.0 ? rocking_fall * width * width * soft.spin / soft.x : 1.0);
+    }
+    return share;
+}
+
+// What carried a body in the step before most likely carries it in this one: a slender block that rocks about one corner
+// brings the other down with a hundredth of the acceleration of free fall, and slowly. Seen as if nothing carried it, it
+// would land too early, and its impact would count as none.
+void Touches::judge_ends(const Model& model, const State& state, const Bodies& bodies, std::span<const Velocity> before,
+                         double fall, double dt) {
+    near_.assign(2 * touches_.size(), fall);
+    slow_.assign(touches_.size(), 1.0);
+    end_.assign(2 * touches_.size(), End::meets);
+    for (std::size_t i = 0; i < touches_.size(); ++i) {
+        Touch& c = touches_[i];
+        slow_[i] = share_of_fall(model, state, bodies, i);
+        for (int end = 0; end < c.ends; ++end) {
+            const double u = normal_velocity(c, ahead_of_contacts(i, bodies), end), gap = manifold_[i].gap[end];
+            double& near = near_[2 * i + end];
+            if (slow_[i] < 1.0)
+                near = std::clamp(0.5 * dt * std::abs(u - normal_velocity(c, before, end)), slow_[i] * fall, fall);
+            if (gap + 0.5 * dt * u <= 0.0 || gap <= near) {
+                c.least[end] = -0.5 * dt * bend(manifold_[i], bodies, before, from_a_[i], c, end).x();
+            } else {
+                c.least[end] = -2.0 * gap / dt;
+                end_[2 * i + end] = End::comes_near;
+            }
+        }
+    }
 }
 
 }  // namespace talus::rigid

@@ -12,8 +12,9 @@ class Touches {
 public:
     /// Looks at every pair of the contact list whose blocks belong to different bodies, whose velocities hold weight and
     /// loads but no contacts; `before`: at the start of the step. Impulses of the step before are taken over (dt times the
-    /// forces of the list). `fall`: m, how far blocks fall within a step; what is nearer counts as touching, or gaps of that
-    /// size would close and open for ever. `rebounds`: some joint has a restitution.
+    /// forces of the list). `fall`: m, how far blocks fall within a step; what is nearer counts as touching (if the block
+    /// does fall, for what carried it before), or gaps of that size would close and open for ever. `rebounds`: some joint
+    /// has a restitution.
     void find(const Model& model, const Placed& placed, const State& state, const Bodies& bodies,
               std::span<const Velocity> before, bool rebounds, double fall, double dt);
 
@@ -65,7 +66,15 @@ private:
     Manifold look_at(const Model& model, const Placed& placed, const Contact& c, const Bodies& bodies,
                      std::span<const Velocity> before, double dt, int& hint) const;
     bool moved_by_impact(const Bodies& bodies, int body) const;  // in this step
-    void find_impacts(const Bodies& bodies, std::span<const Velocity> before, double fall, double dt);
+    void find_turns(const State& state, std::span<const Velocity> before);
+    double share_of_fall(const Model& model, const State& state, const Bodies& bodies, std::size_t touch) const;
+    void judge_ends(const Model& model, const State& state, const Bodies& bodies, std::span<const Velocity> before,
+                    double fall, double dt);
+    void find_impacts(const Bodies& bodies, std::span<const Velocity> before, double dt);
+    /// As slender blocks will move if what carried them in the step before does so in this one, and all others without it.
+    std::span<const Velocity> ahead_of_contacts(std::size_t touch, const Bodies& bodies) const {
+        return slow_[touch] < 1.0 ? carried_ : bodies.velocity;
+    }
     void find_uneven(const Bodies& bodies, std::span<const Velocity> before);
     void take_to_time_of_impact(const Bodies& bodies, std::span<const Velocity> before, double exact, double dt,
                                 std::span<Velocity> displacement) const;
@@ -82,6 +91,9 @@ private:
     std::vector<double> rebound_;        // [touches] restitution
     std::vector<Vec2> from_a_;           // [touches] m, centroid of block a from that of its body
     std::vector<End> end_;               // [2 touches] what becomes of it in this step
+    std::vector<double> slow_;           // [touches] of free fall, with which slender blocks rock; 1: not slender
+    std::vector<double> near_;           // [2 touches] m, how far it falls in a step: what is nearer touches
+    std::vector<Velocity> carried_;      // [nq] with weight, loads and the contacts of the step before
     std::vector<double> landed_;         // [2 touches] m, gap of an end that bounces at the end of the step
     std::vector<double> hit_;            // [2 touches] share of the step before it hits; above 1: it does not
     std::vector<double> ahead_;          // [touches] s, after the middle of the step: when it hits, 0 = it does not

@@ -2,6 +2,7 @@
 // are in the middle of the step, so constant acceleration, sliding and rocking are second order in the step.
 #include "core/errors.hpp"
 #include "dynamics/motion.hpp"
+#include "model/burden.hpp"
 #include "rigid/scratch.hpp"
 #include "simulation/deep_overlap.hpp"
 #include "simulation/simulation.hpp"
@@ -64,12 +65,7 @@ void Simulation::begin_rigid() {
         state_.stage_step = *now.time_step;
         return;
     }
-    double smallest = std::numeric_limits<double>::infinity();
-    for (BlockId b = 0; b < model_.blocks.size(); ++b)
-        if (!model_.blocks.held(b) && !state_.removed[b]) smallest = std::min(smallest, model_.blocks.area[b]);
-    const double size = std::isfinite(smallest) ? std::sqrt(smallest) : 1.0;
-    const double gravity = std::hypot(model_.gravity_x(0.0), model_.gravity_y(0.0));
-    double dt = share_of_fall * std::sqrt(size / std::max(gravity, 1.0));
+    double dt = step_of_fall(model_, std::span<const Load>(model_.loads).subspan(model_.boundary_loads), share_of_fall);
     if (now.until.time) dt = *now.until.time / std::ceil(*now.until.time / dt);
     state_.stage_step = dt;
 }
@@ -299,7 +295,8 @@ void Simulation::account_rigid(const Motion& start, std::span<const Vec2> middle
     Ledger& ledger = state_.ledger;
     const Vec2 g = mean_gravity(model_, state_.stage_time - dt, dt);
     speed_ = 0.0;
-    double fall = 0.0;  // J, that all blocks would gain in this step by falling: what nothing at rest is judged against
+    double fall =
+        0.0;  // J, that all blocks would gain in this step by weight and loads: what nothing at rest is judged against
     for (BlockId b = 0; b < model_.blocks.size(); ++b) {
         const int q = r.bodies->body_of[b];
         const Velocity& v = r.bodies->velocity[q];
@@ -313,7 +310,7 @@ void Simulation::account_rigid(const Motion& start, std::span<const Vec2> middle
         const Vec2& free = model_.blocks.inv_mass[b];
         const Vec2 weight = model_.blocks.mass[b] * g;
         const Vec2 load = r.external[b].force - weight;
-        fall += 0.5 * model_.blocks.mass[b] * g.squaredNorm() * dt * dt;
+        fall += 0.5 * r.external[b].force.squaredNorm() / model_.blocks.mass[b] * dt * dt;
         for (const int axis : {0, 1}) {
             if (free[axis] != 0.0)
                 ledger.gravity += weight[axis] * moved[axis], ledger.loads += load[axis] * moved[axis];

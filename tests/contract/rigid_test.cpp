@@ -203,3 +203,90 @@ run: {until: {time: 0.5}, solver: rigid}
     CHECK(state.ledger.friction == Approx(std::tan(std::numbers::pi / 6) * 1300 * 9.81 * 0.002).epsilon(0.01));
     for (const BlockId b : {2, 3}) CHECK((state.motion.position[b] - state.start_position[b]).norm() < 1e-8);
 }
+
+// Load of 20 times the weight, eccentric by a quarter of the base, inclined by nine tenths of friction: by Coulomb and by
+// the middle half of the base it rests. Loads turn a block that stands as little as weight does.
+TEST_CASE("rigid: a block under a large eccentric load stands as it would under its weight") {
+    WholeRun run(scenario_of(R"(
+gravity: [0, -9.81]
+materials: {rock: {density: 2500}}
+joints: {j: {normal_stiffness: 1e9, shear_stiffness: 1e9, friction_angle_deg: 30}}
+blocks:
+  - {name: base, rectangle: {corner: [-1, -1], size: [3, 1]}, held: true}
+  - {name: block, rectangle: {corner: [0, 0], size: [1, 1]}}
+loads: [{block: block, force: [2.54875e5, -4.905e5], point: [0.25, 0.2]}]
+run: {until: {time: 1}, solver: rigid}
+)"));
+    run.to_the_end();
+    CHECK((run.state().motion.position[1] - run.state().start_position[1]).norm() < 1e-8);
+    CHECK(run.state().stage_step < 1.01 * std::sqrt(1.0 / 221.0) / 80.0);  // 22.5 g of load, 1 g of weight
+}
+
+// Housner: of its tilt a block that rocks keeps th1, where cos(a - th1) - cos a = r^2 (cos(a - th0) - cos a), a = atan(b/h),
+// r = 1 - 1.5 sin^2 a.
+TEST_CASE("rigid: a slender block that rocks loses at each impact what its shape says") {
+    for (const double height : {2.0, 10.0, 30.0}) {
+        CAPTURE(height);
+        const double alpha = std::atan(0.5 / height), tilt = 0.5 * alpha;
+        Scenario scene = scenes::with({scenes::block("floor", scenes::rectangle(-5, -1, 5, 0)),
+                                       scenes::block("column", scenes::turned(scenes::rectangle(0, 0, 0.5, height),
+                                                                              tilt * 180.0 / std::numbers::pi))});
+        scene.blocks[0].held = {true, true, true};
+        scene.joints[0].friction_angle = 1.2;
+        scene.run.solver = "rigid";
+        scene.run.until.time = 1.6 * std::sqrt(height);
+        WholeRun run(scene);
+        double least = 0.0;
+        run.to_the_end([&](WholeRun& r) { least = std::min(least, r.state().motion.angle[1]); });
+        const double r = 1.0 - 1.5 * std::pow(std::sin(alpha), 2);
+        const double back = alpha - std::acos(std::cos(alpha) + r * r * (std::cos(alpha - tilt) - std::cos(alpha)));
+        CHECK(-least == Approx(tilt + back).epsilon(1e-3));
+    }
+}
+
+// Up with 1 m/s and g (sin 30 + cos 30 tan 20), back with g (sin 30 - cos 30 tan 20): of second order, wherever in a step it
+// turns.
+TEST_CASE("rigid: what slides up a slope turns back at once") {
+    const double up = 9.81 * (0.5 + std::sqrt(0.75) * std::tan(std::numbers::pi / 9));
+    const double down = 9.81 * (0.5 - std::sqrt(0.75) * std::tan(std::numbers::pi / 9)), turns = 1.0 / up;
+    for (const double dt : {0.004, 0.0033, 0.0027, 0.001}) {
+        CAPTURE(dt);
+        Scenario scene = scenario_of(R"(
+gravity: [4.905, -8.495709211]
+materials: {rock: {density: 2600}}
+joints: {j: {normal_stiffness: 1e9, shear_stiffness: 1e9, friction_angle_deg: 20}}
+blocks:
+  - {name: slope, rectangle: {corner: [-50, -1], size: [100, 1]}, held: true}
+  - {name: block, rectangle: {corner: [0, 0], size: [1, 0.5]}, velocity: [-1, 0]}
+run: {until: {time: 0.5}, solver: rigid}
+)");
+        scene.run.time_step = dt;
+        WholeRun run(scene);
+        run.to_the_end();
+        const double slid = run.state().time - turns;
+        const double x = 0.5 * down * slid * slid - 0.5 * turns;
+        const double way = run.state().motion.position[1].x() - run.state().start_position[1].x();
+        CHECK(std::abs(way - x) < 1.5 * dt * dt);
+        CHECK(run.state().motion.velocity[1].x() == Approx(down * slid).margin(2.0 * dt * dt));
+    }
+}
+
+// Nothing but an impact with restitution 1 acts: the kinetic energy stays, whichever of the faces at the tips they meet at.
+TEST_CASE("rigid: two tips that meet off centre by less than corners are told apart bounce all the same") {
+    for (const double offset : {-1e-6, 0.0, 1e-8, 1e-7, 1e-6, 1e-4}) {
+        CAPTURE(offset);
+        Scenario scene = scenes::with({scenes::block("a", {{0, 0}, {-0.5, 0.65}, {-1.3, 0.4}, {-1.3, -0.4}, {-0.5, -0.65}}),
+                                       scenes::block("b", {{0.05, offset}, {0.95, -0.9}, {1.55, 0.4}})});
+        scene.gravity = {};
+        scene.blocks[0].velocity = {1.0, 0.0};
+        scene.joints[0].friction_angle = 0.0;
+        scene.joints[0].restitution = 1.0;
+        scene.run.solver = "rigid";
+        scene.run.until.time = 0.15;
+        WholeRun run(scene);
+        const double before = run.simulation().energies().kinetic;
+        run.to_the_end();
+        CHECK(run.state().motion.velocity[1].norm() > 0.1);
+        CHECK(run.simulation().energies().kinetic == Approx(before).epsilon(1e-6));
+    }
+}
