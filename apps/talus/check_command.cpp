@@ -9,6 +9,7 @@
 #include "scenario/reader.hpp"
 #include "simulation/preview.hpp"
 #include "simulation/run.hpp"
+#include "simulation/trial.hpp"
 
 #include <algorithm>
 #include <array>
@@ -211,11 +212,13 @@ int check_command(const CheckArguments& arguments) {
     std::printf("solver         %s%s\n", simulation.stage().solver.c_str(), fit_for(simulation.stage().solver));
     print_decisions(simulation);
     print_step(simulation);
+    const std::string long_run = long_stage(simulation);
     const Cost cost = print_cost(simulation);
     if (const std::string text = scenario.run.accuracy ? "" : advice(scenario, simulation, cost); !text.empty())
         std::printf("advice         %s\n", text.c_str());
     print_memory(simulation);
     for (const std::string& warning : simulation.report().warnings) std::printf("warning: %s\n", warning.c_str());
+    if (!long_run.empty()) std::printf("warning: %s\n", long_run.c_str());
     return ok;
 }
 

@@ -110,6 +110,7 @@ int carry_out(Simulation& simulation, Recorder& recorder, Watch* watch, std::siz
         steps.push_back(s.state().stage_step);
         progress.stage_begun(s);
         print_stage(s);
+        if (const std::string warning = long_stage(s); !warning.empty()) std::printf("warning: %s\n", warning.c_str());
         std::fflush(stdout);
     };
     options.progress = [&](const Simulation& s) { progress(s); };

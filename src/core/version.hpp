@@ -7,6 +7,6 @@ extern const char* const compiler;  // as given by the build, e.g. "GNU 12.2.0 R
 
 /// Versions of the two file layouts the program writes.
 inline constexpr int results_schema = 1;
-inline constexpr int restart_schema = 6;
+inline constexpr int restart_schema = 7;
 
 }  // namespace talus

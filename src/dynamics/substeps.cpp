@@ -111,6 +111,15 @@ Substeps substeps_for(const Model& model, const State& state, std::span<const do
     return found;
 }
 
+Substeps substeps_of_step(const Model& model, const State& state, std::span<const double> limits, int asked, double step,
+                          double fraction) {
+    const double bound = limits.empty() ? step : *std::ranges::min_element(limits);
+    int count = asked;
+    if (asked == 0)
+        for (count = 1; count < most_substeps && step > count * fraction * bound;) count *= 2;
+    return count == 1 ? Substeps{} : substeps_for(model, state, limits, count, step, std::min(slow_share, fraction));
+}
+
 ChosenSubsteps choose_substeps(const Model& model, const State& state, std::span<const double> limits, double step,
                                double share) {
     ChosenSubsteps best{{}, step};

@@ -37,6 +37,10 @@ struct Substeps {
 Substeps substeps_for(const Model& model, const State& state, std::span<const double> limits, int count, double step,
                       double share);
 
+/// With a step that is given: `asked` of them, or (0) as many as bring the smallest block to `fraction` of its limit.
+Substeps substeps_of_step(const Model& model, const State& state, std::span<const double> limits, int asked, double step,
+                          double fraction);
+
 /// That of 1, 2, 4 or 8 which saves most, with the step (s) that it goes with; `step` without any.
 struct ChosenSubsteps {
     Substeps substeps;

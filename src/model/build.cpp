@@ -22,6 +22,15 @@ namespace {
 constexpr double relative_tolerance = 1e-9;
 constexpr std::size_t most_overlaps_told = 50;  // more of them have one cause and hide the other faults
 
+/// m/s2, under which the run begins. A static stage has its tables at their end.
+Vec2 gravity_at_start(const Scenario& scenario) {
+    const bool only = scenario.stages.empty(), own = !only && scenario.stages.front().gravity;
+    const VectorTable& gravity = own ? *scenario.stages.front().gravity : scenario.gravity;
+    const std::string& solver = only ? scenario.run.solver : scenario.stages.front().solver;
+    if (solver != "static" || (!only && !own)) return gravity(0.0);
+    return {gravity.x.at_the_end()(0.0), gravity.y.at_the_end()(0.0)};
+}
+
 class Builder {
 public:
     explicit Builder(const Scenario& scenario) : scenario_(scenario), model_(scene_.model) {}
@@ -35,6 +44,7 @@ private:
     void find_touching_parts();
     void tell_overlaps(std::span<const Neighbours::Overlap> overlaps);
     void set_joints();
+    double rock_weight(const InitialStressSpec& spec);
     void set_initial_stress();
     void set_state();
     void set_loads();
@@ -173,6 +183,18 @@ void Builder::set_joints() {
     }
 }
 
+/// N/m3, that of the field by default; the density is that of the rock around all regions.
+double Builder::rock_weight(const InitialStressSpec& spec) {
+    const Vec2 gravity = gravity_at_start(scenario_);
+    if (gravity.isZero() && spec.k0 && !spec.unit_weight && (spec.surcharge == 0.0 || !scenario_.gravity.x.is_constant()))
+        scene_.report.warnings.push_back(
+            "initial_stress.k0: there is no gravity when the run begins, so that the stress does not grow with depth; give "
+            "initial_stress.unit_weight");
+    const int rock =
+        scenario_.rock ? index_of(model_.material_names, scenario_.rock->material) : model_.blocks.material.front();
+    return density_[rock] * gravity.norm();
+}
+
 void Builder::set_initial_stress() {
     const InitialStressSpec* spec = scenario_.initial_stress ? &*scenario_.initial_stress : nullptr;
     StressField field;
@@ -188,8 +210,7 @@ void Builder::set_initial_stress() {
                 fault({scenario_.file, 0}, std::string("initial_stress.") + side_names[i],
                       "loads nothing: no block has an edge along this side of the box around the rock");
         throw_faults();
-        const double gravity = scenario_.gravity(0.0).norm();
-        field = stress_field(*spec, density_[model_.blocks.material.front()] * gravity, outline.ymax);
+        field = stress_field(*spec, rock_weight(*spec), outline.ymax);
         model_.loads = boundary_loads(model_, *spec, field, corner_, neighbours_.covered, blocks, outline);
         model_.boundary_loads = static_cast<int>(model_.loads.size());
     }
@@ -261,7 +282,8 @@ Scene Builder::build() {
     round_corners();
     set_state();
     set_loads();
-    scene_.report.warnings = warnings(scenario_, scene_.model, neighbours_, prestress_, scene_.report.faces_per_joint);
+    for (std::string& warning : warnings(scenario_, scene_.model, neighbours_, prestress_, scene_.report.faces_per_joint))
+        scene_.report.warnings.push_back(std::move(warning));
     return std::move(scene_);
 }
 

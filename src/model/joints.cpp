@@ -61,7 +61,7 @@ Joint make_joint(const JointSpec& spec) {
     joint.cohesion_residual = residual.cohesion;
     joint.tan_dilation = std::tan(spec.dilation_angle);
     if (spec.dilation_cutoff_slip) joint.dilation_cutoff_slip = *spec.dilation_cutoff_slip;
-    joint.restitution = spec.restitution;
+    joint.restitution = spec.restitution.value_or(0.0);
     joint.weakens = spec.residual.has_value();
     joint.cells = spec.cells;
     joint.name = spec.name;

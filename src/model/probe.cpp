@@ -163,8 +163,19 @@ double largest_overlap(const State& state) {
 }
 
 /// Counts the contacts that slide now and did not when it was read last, and the other way round.
-class SlipChanges {
+class SlipChanges final : public ProbeMemory {
 public:
+    std::vector<double> values() const override {
+        std::vector<double> all{static_cast<double>(count_)};
+        for (const auto& [a, b] : sliding_) all.insert(all.end(), {static_cast<double>(a), static_cast<double>(b)});
+        return all;
+    }
+    void restore(std::span<const double> values) override {
+        count_ = static_cast<std::size_t>(values[0]);
+        sliding_.clear();
+        for (std::size_t i = 1; i + 1 < values.size(); i += 2)
+            sliding_.push_back({static_cast<PartId>(values[i]), static_cast<PartId>(values[i + 1])});
+    }
     double operator()(const State& state) {
         if (state.step == 0) count_ = 0, sliding_.clear();
         now_.clear();
@@ -194,10 +205,6 @@ Reading of_scene(const ProbeSpec& spec) {
         };
     if (spec.quantity == "max_overlap")
         return [](const Model&, const State& s, const Gauges&) { return largest_overlap(s); };
-    if (spec.quantity == "slip_changes")
-        return [changes = std::make_shared<SlipChanges>()](const Model&, const State& s, const Gauges&) {
-            return (*changes)(s);
-        };
     if (spec.quantity == "area") return [](const Model& m, const State& s, const Gauges&) { return total_area(m, s); };
     if (spec.quantity == "energy_gain") return [](const Model&, const State&, const Gauges& g) { return g.energy_gain; };
     if (spec.quantity == "time_step") return [](const Model&, const State&, const Gauges& g) { return g.time_step; };
@@ -208,8 +215,10 @@ Reading of_scene(const ProbeSpec& spec) {
 }
 
 /// Change of the total since the last reset over the largest energy that has moved.
-class EnergyDrift {
+class EnergyDrift final : public ProbeMemory {
 public:
+    std::vector<double> values() const override { return {total_, largest_}; }
+    void restore(std::span<const double> values) override { total_ = values[0], largest_ = values[1]; }
     double operator()(const State& state, const Energies& e) {
         if (state.step == 0 || largest_ < 0.0) total_ = e.total(), largest_ = 0.0;
         for (const double moved : {e.kinetic, e.strain_normal + e.strain_shear, e.friction, e.gravity, e.loads, e.driven})
@@ -222,10 +231,6 @@ private:
 };
 
 Reading of_energy(const ProbeSpec& spec) {
-    if (spec.quantity == "energy_drift")
-        return [drift = std::make_shared<EnergyDrift>()](const Model&, const State& s, const Gauges& g) {
-            return (*drift)(s, g.energies);
-        };
     const auto reading = [](auto part) {
         return [part](const Model&, const State&, const Gauges& g) { return part(g.energies); };
     };
@@ -279,6 +284,13 @@ Reading reading_of(Quantity::Place place, const ProbeSpec& spec, const Model& mo
     return reads_energies(spec) ? of_energy(spec) : of_scene(spec);
 }
 
+template <class Memory, class Read>
+void remember(Probe& probe, Read read) {
+    const auto memory = std::make_shared<Memory>();
+    probe.memory = memory;
+    probe.read = [memory, read](const Model&, const State& s, const Gauges& g) { return read(*memory, s, g); };
+}
+
 }  // namespace
 
 BlockId observed_block(const ProbeSpec& spec, const Model& model, const State& state) {
@@ -288,8 +300,15 @@ BlockId observed_block(const ProbeSpec& spec, const Model& model, const State& s
 Probe make_probe(const ProbeSpec& spec, const Model& model, const State& state) {
     const Quantity* quantity = find_quantity(spec.quantity);
     if (!quantity || !quantity->history) refuse(spec, "is not a quantity that can be observed");
-    return {name_of(spec, model.origin), quantity->unit, reads_energies(spec),
-            reading_of(quantity->place, spec, model, state)};
+    Probe probe{name_of(spec, model.origin), quantity->unit, reads_energies(spec), {}};
+    if (spec.quantity == "slip_changes")
+        remember<SlipChanges>(probe, [](SlipChanges& memory, const State& s, const Gauges&) { return memory(s); });
+    else if (spec.quantity == "energy_drift")
+        remember<EnergyDrift>(probe,
+                              [](EnergyDrift& memory, const State& s, const Gauges& g) { return memory(s, g.energies); });
+    else
+        probe.read = reading_of(quantity->place, spec, model, state);
+    return probe;
 }
 
 }  // namespace talus

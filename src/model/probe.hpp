@@ -7,7 +7,10 @@
 #include "scenario/scenario.hpp"
 
 #include <functional>
+#include <memory>
+#include <span>
 #include <string>
+#include <vector>
 
 namespace talus {
 
@@ -18,12 +21,21 @@ struct Gauges {
     double energy_gain = 0.0;                   // 1, see Simulation::energy_gain
 };
 
+/// What a probe has to know of earlier readings: a run that is resumed takes it with it.
+class ProbeMemory {
+public:
+    virtual ~ProbeMemory() = default;
+    virtual std::vector<double> values() const = 0;
+    virtual void restore(std::span<const double> values) = 0;  // such as `values` gave
+};
+
 /// Found once at the start and read at any step after; it follows its block or its joint, not its place.
 struct Probe {
     std::string name;  // "displacement.x at (30, 15)", in the user's coordinates
     std::string unit;  // SI, "1" for plain numbers
     bool needs_energies = false;
     std::function<double(const Model&, const State&, const Gauges&)> read;
+    std::shared_ptr<ProbeMemory> memory = nullptr;  // mostly none
 };
 
 /// Throws InputError for a quantity or component that does not exist, or a place or block that fits nothing.

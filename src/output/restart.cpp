@@ -308,6 +308,32 @@ State with_contacts_alive(const State& state) {
     return kept;
 }
 
+// Lists of different lengths, one behind the other.
+void write_memory(h5::File& file, const std::vector<std::vector<double>>& memory) {
+    std::vector<std::int64_t> lengths;
+    std::vector<double> values;
+    for (const std::vector<double>& one : memory) {
+        lengths.push_back(static_cast<std::int64_t>(one.size()));
+        values.insert(values.end(), one.begin(), one.end());
+    }
+    file.write<std::int64_t>("/restart/memory_lengths", lengths, {static_cast<std::int64_t>(lengths.size())},
+                             {"1", "probes with a memory"});
+    file.write<double>("/restart/memory", values, {static_cast<std::int64_t>(values.size())}, {"", "their numbers"});
+}
+
+std::vector<std::vector<double>> read_memory(const h5::File& file) {
+    const auto values = file.read<double>("/restart/memory");
+    std::vector<std::vector<double>> memory;
+    std::size_t at = 0;
+    for (const std::int64_t length : file.read<std::int64_t>("/restart/memory_lengths")) {
+        const std::size_t end = std::min(values.size(), at + static_cast<std::size_t>(length));
+        memory.emplace_back(values.begin() + static_cast<std::ptrdiff_t>(at),
+                            values.begin() + static_cast<std::ptrdiff_t>(end));
+        at = end;
+    }
+    return memory;
+}
+
 void write_info(h5::File& file, const RestartInfo& info) {
     file.make_group("/restart");
     file.set("/restart", "schema_version", std::int64_t{restart_schema});
@@ -321,6 +347,8 @@ void write_info(h5::File& file, const RestartInfo& info) {
     for (const auto& [name, count] : info.history_rows) names.push_back(name), rows.push_back(count);
     file.write_texts("/restart/history_names", names, "histories");
     file.write<std::int64_t>("/restart/history_rows", rows, {static_cast<std::int64_t>(rows.size())}, {"1", "histories"});
+    file.set("/restart", "stages_recorded", std::int64_t{info.stages_recorded});
+    write_memory(file, info.memory);
 }
 
 h5::File open_restart(const std::string& path) {
@@ -388,6 +416,8 @@ RestartInfo read_restart_info(const std::string& path) {
     const auto names = file.read_texts("/restart/history_names");
     const auto rows = file.read<std::int64_t>("/restart/history_rows");
     for (std::size_t i = 0; i < names.size() && i < rows.size(); ++i) info.history_rows.emplace_back(names[i], rows[i]);
+    info.stages_recorded = static_cast<int>(file.integer("/restart", "stages_recorded"));
+    info.memory = read_memory(file);
     return info;
 }
 

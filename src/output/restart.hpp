@@ -13,7 +13,9 @@ namespace talus {
 
 struct RestartInfo : ScenarioInfo {
     std::int64_t frames = 0;  // in the result file at this moment
-    HistoryRows history_rows;
+    HistoryRows history_rows = {};
+    int stages_recorded = 0;                       // stages whose end is in the result file
+    std::vector<std::vector<double>> memory = {};  // of each probe that has one, in the order of the histories
 };
 
 /// Replaces the file in one step: whoever looks finds the old restart or the new one. Contacts that are not alive are left

@@ -57,6 +57,7 @@ std::vector<MaterialSpec> convert_materials(const Cursor& materials) {
 JointSpec convert_joint(const std::string& name, const Cursor& at) {
     JointSpec joint;
     joint.name = name;
+    joint.where = at.where();
     joint.normal_stiffness = at["normal_stiffness"].number();
     joint.shear_stiffness = at["shear_stiffness"].number();
     joint.friction_angle = at["friction_angle_deg"].angle();
@@ -64,7 +65,7 @@ JointSpec convert_joint(const std::string& name, const Cursor& at) {
     joint.tension = at["tension"].number();
     joint.dilation_angle = at["dilation_angle_deg"].angle();
     joint.dilation_cutoff_slip = at["dilation_cutoff_slip"].maybe_number();
-    joint.restitution = at["restitution"].number();
+    joint.restitution = at["restitution"].maybe_number();
     joint.cells = static_cast<int>(at["cells"].number());
     if (const Cursor residual = at["residual"]; residual.given()) {
         const Cursor friction = residual["friction_angle_deg"];

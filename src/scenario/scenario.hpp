@@ -32,11 +32,12 @@ struct ResidualSpec {                             // strength after the first sl
 
 struct JointSpec {
     std::string name;
+    Where where;
     double normal_stiffness = 0.0, shear_stiffness = 0.0;        // Pa/m; 0: left to the accuracy
     double friction_angle = 0.0, cohesion = 0.0, tension = 0.0;  // rad, Pa, Pa
     double dilation_angle = 0.0;                                 // rad
     std::optional<double> dilation_cutoff_slip;                  // m, no dilation beyond this slip
-    double restitution = 0.0;                                    // of the speed of approach; rigid solver only
+    std::optional<double> restitution;                           // of the speed of approach; rigid solver only
     std::optional<ResidualSpec> residual;                        // absent: strength does not weaken by slip
     int cells = 2;                                               // bond cells per joint face
 };
@@ -205,8 +206,8 @@ struct RunSpec {
     bool unchecked = false;  // accept a time step above the stable estimate, and blocks that pass through each other
     DampingSpec damping;
     double smallest_failure = 0.001;  // share of the area of free blocks; less on its way is loose stones
-    std::optional<double> freeze;  // share of its weight below which a block at rest is frozen; absent: never
-    int substeps = 1;  // of blocks whose stable step is short: 1, 2, 4, 8; 0: what saves most
+    std::optional<double> freeze;     // share of its weight below which a block at rest is frozen; absent: never
+    int substeps = 1;                 // of blocks whose stable step is short: 1, 2, 4, 8; 0: what saves most
     std::string search = "auto";
     std::optional<double> skin;             // m; absent: automatic
     bool face_path = true;                  // closed-form path for faces; false: general distance potential everywhere

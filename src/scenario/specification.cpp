@@ -87,8 +87,9 @@ Shape joint_keys(const std::string& title, const std::string& meaning, bool chan
         {"dilation_angle_deg", number("deg", friction_range), zero, "not above the friction angle, nor the residual one"},
         {"dilation_cutoff_slip", number("m", positive), change ? optional : derived("no cut-off"),
          "no dilation beyond this slip"},
-        {"restitution", number("1", {0.0, 1.0, false, false}), zero,
-         "share of the speed of approach with which blocks rebound; for the rigid solver only"},
+        {"restitution", number("1", {0.0, 1.0, false, false}), change ? optional : derived("0 for the rigid solver"),
+         "share of the speed of approach with which blocks rebound; for the rigid solver only, which `run.accuracy` then "
+         "chooses"},
         {"residual", residual, change ? optional : derived("as peak"), "strength after the first slip or break"}};
     // Not in a change: the cells of the faces are counted when the scene is built.
     if (!change)
@@ -124,7 +125,7 @@ Shape initial_stress() {
         {{"k0", number("1", not_negative), optional, "horizontal over vertical stress"},
          {"surface", number("m"), derived("top of the scene"), "y where the vertical stress is the surcharge"},
          {"surcharge", number("Pa"), fallback("0"), "vertical stress at the surface"},
-         {"unit_weight", number("N/m3", not_negative), derived("density of the rock times gravity"),
+         {"unit_weight", number("N/m3", not_negative), derived("density of `rock.material` times gravity at the start"),
           "increase of the vertical stress with depth"},
          {"stress", stress, optional, "`[xx, yy, xy]` at the point (0, 0) of the file's coordinates"},
          {"gradient_x", gradient, fallback("[0, 0, 0]"), "increase of `[xx, yy, xy]` per m along x"},

@@ -72,8 +72,9 @@ Verdict judge(const ExpectSpec& e, const std::string& name, const Signal& observ
         v.allowed = std::max(e.tolerance.value_or(0.0) * std::abs(v.expected), e.tolerance_absolute.value_or(0.0));
     } else {
         const double short_of = e.above.value_or(-infinity) - v.measured, beyond = v.measured - e.below.value_or(infinity);
-        v.expected = short_of > beyond ? *e.above : e.below.value_or(0.0);
-        v.asked = short_of > beyond ? "above" : "below";
+        const bool lower = !e.below || short_of > beyond;  // also where nothing was measured, and neither holds
+        v.expected = lower ? e.above.value_or(0.0) : *e.below;
+        v.asked = lower ? "above" : "below";
         v.error = std::isnan(v.measured) ? v.measured : std::max({0.0, short_of, beyond});
     }
     v.passed = v.error <= v.allowed;  // false for NaN

@@ -18,10 +18,7 @@ void Simulation::begin_substeps(double& dt) {
         found = std::move(chosen.substeps);
         dt = chosen.step;
     } else if (stage().time_step) {
-        int count = most;
-        if (most == 0)
-            for (count = 1; count < most_substeps && dt > count * fraction * stable_.bound;) count *= 2;
-        found = substeps_for(model_, state_, limits, count, dt, share);
+        found = substeps_of_step(model_, state_, limits, most, dt, fraction);
     } else {  // as many as leave any block slow
         for (int count = most; count > 1 && found.count == 1; count /= 2)
             found = substeps_for(model_, state_, limits, count, count * dt, share);

@@ -3,6 +3,7 @@
 #include "scenario/springs.hpp"
 
 #include <algorithm>
+#include <limits>
 
 namespace talus {
 namespace {
@@ -45,6 +46,44 @@ bool with_springs(const StageView& s) { return *s.solver == "explicit" || *s.sol
 
 bool dilates(const JointSpec& joint) { return joint.dilation_angle > 0.0; }
 
+bool calms(const StageView& s) { return s.until->equilibrium || s.damping->contact > 0.0 || s.damping->local > 0.0; }
+
+/// Whether the end of the run finds blocks at rest, if anything does.
+bool comes_to_rest(const Scenario& scenario, const std::vector<StageView>& stages) {
+    return calms(stages.back()) && !takes_time(scenario);
+}
+
+/// Share of a block by which the top comes down on the joints whose stiffness is given, under what lies still on them.
+double settlement(const Scenario& scenario, const Burden& burden) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const JointSpec& joint : scenario.joints)
+        if (joint.normal_stiffness > 0.0) least = std::min(least, joint.normal_stiffness);
+    return burden.stress / (least * burden.mean_size) * std::max(1.0, 0.5 * burden.layers);
+}
+
+// What is let go at once goes twice as far as what is set down.
+constexpr double overshoot = 2.0;
+
+/// What is asked for of which the give of joints is part; the why is empty if there is nothing of the kind.
+Need need_of_give(const Scenario& s, const std::vector<StageView>& stages, const Burden& burden) {
+    const auto answer = [](const std::string& why) { return Need{why, false, false, true}; };
+    if (const std::string give = asked_of_give(s); !give.empty())
+        return answer(give + " depends on the stiffness of joints");
+    if (const std::string small = asked_below(s, overshoot * settlement(s, burden), burden.mean_size); !small.empty())
+        return answer(small + " is no more than joints close");
+    // Blocks that are lifted bounce, and how much of the lift they keep is a matter of stiffness however large it is.
+    if (std::any_of(s.joints.begin(), s.joints.end(), dilates))
+        return answer("dilation presses on joints by their stiffness");
+    const std::string asked = asked_of_forces(s);
+    const bool stress = s.run.accuracy->joint_stress.has_value();
+    const bool forces = (stress || !asked.empty()) && comes_to_rest(s, stages);
+    const std::string relieved = "joints under initial stress are loaded or relieved, and move by what they give";
+    if (relieves_stress(s) && !(forces && asked_of_movements(s).empty())) return answer(relieved);
+    if (!stress && asked.empty()) return {};
+    const std::string why = stress ? "the stress of joints is asked for" : asked + " depends on the stiffness of joints";
+    return forces ? Need{.why = why, .give_is_error = false, .at_rest = true} : answer(why);
+}
+
 }  // namespace
 
 std::vector<StageView> stages_of(Scenario& scenario) {
@@ -58,14 +97,15 @@ std::vector<StageView> stages_of(Scenario& scenario) {
 }
 
 Need need_of_springs(const Scenario& s, const std::vector<StageView>& stages, const Model& model, const Burden& burden) {
-    const std::string asked = asked_of_springs(s);
-    if (s.run.accuracy->joint_stress) return {"the stress of joints is asked for", false};
-    if (!asked.empty()) return {asked + " depends on the stiffness of joints", false};
-    if (burden.speed > 0.0 && !has_restitution(s))
-        return {"blocks fly, and joints without a restitution rebound by their stiffness", false};
-    if (relieves_stress(s)) return {"joints under initial stress are loaded or relieved, and move by what they give", false};
-    if (std::any_of(s.joints.begin(), s.joints.end(), dilates))
-        return {"dilation presses on joints by their stiffness", false};
+    if (Need need = need_of_give(s, stages, burden); !need.why.empty()) return need;
+    if (burden.speed > 0.0 && !has_restitution(s)) {
+        const bool calmed = std::any_of(stages.begin(), stages.end(), calms);
+        return {.why = "blocks fly, and joints without a restitution rebound by their stiffness",
+                .give_is_error = false,
+                .open_is_error = false,
+                .remedy =
+                    calmed ? "" : "state a restitution of the joints (0: none), with which the rigid solver takes impacts"};
+    }
     if (const StageView* stage = find(stages, damped))
         return {"damping is given (" + stage->name + "), which acts beside springs"};
     if (bonded_roller(model)) return {"bonded blocks are driven, or held along some axes only"};
@@ -86,7 +126,12 @@ bool takes_time(const Scenario& scenario) {
 
 bool has_restitution(const Scenario& scenario) {
     return std::any_of(scenario.joints.begin(), scenario.joints.end(),
-                       [](const JointSpec& j) { return j.restitution > 0.0; });
+                       [](const JointSpec& j) { return j.restitution.has_value(); });
+}
+
+bool rebounds(const Scenario& scenario) {
+    return std::any_of(scenario.joints.begin(), scenario.joints.end(),
+                       [](const JointSpec& j) { return j.restitution.value_or(0.0) > 0.0; });
 }
 
 }  // namespace talus

@@ -24,7 +24,12 @@ std::vector<StageView> stages_of(Scenario& scenario);
 
 struct Need {
     std::string why;            // empty: blocks with rigid joints do
-    bool give_is_error = true;  // what joints close is error; else it is part of the answer
+    bool give_is_error = true;  // what joints of the stiffness given close is error; else it is part of the answer
+    bool open_is_error = true;  // likewise of those whose stiffness is left open
+    /// What is asked for is the give of joints itself: no accuracy knows it, and nothing can be left open.
+    bool gives_answer = false;
+    bool at_rest = false;     // forces in equilibrium alone are asked for
+    std::string remedy = {};  // what a scenario may state so that it needs no springs
 };
 
 /// What a scenario asks for, or has, that blocks with rigid joints have not.
@@ -34,6 +39,10 @@ Need need_of_springs(const Scenario& scenario, const std::vector<StageView>& sta
 /// Something moves as a table says, which takes time.
 bool takes_time(const Scenario& scenario);
 
+/// Of some joint, 0 or more.
 bool has_restitution(const Scenario& scenario);
+
+/// Of some joint, which rebounds.
+bool rebounds(const Scenario& scenario);
 
 }  // namespace talus

@@ -4,6 +4,7 @@
 #include "core/text.hpp"
 #include "model/build.hpp"
 #include "model/burden.hpp"
+#include "scenario/springs.hpp"
 #include "simulation/need.hpp"
 
 #include <algorithm>
@@ -87,11 +88,14 @@ public:
         if (accuracy_ < finest)
             refuse("no solver is known to hold it; " + share(finest) + " can be reached where motion is regular");
         need_ = need_of_springs(scene(), stages_, model_, burden_);
-        plan_.give_is_error = need_.give_is_error;
-        if (!need_.why.empty() && has_restitution(scene()) && !uses("rigid"))
-            refuse("a restitution is for the rigid solver, but " + need_.why);
+        check_restitution();
+        if (need_.gives_answer) ask_for_stiffness(need_.why);
+        plan_.give_is_error = need_.give_is_error || (need_.open_is_error && !std::isfinite(softest_));
+        if (!need_.remedy.empty()) plan_.warnings.push_back(need_.why + "; " + need_.remedy);
+        plan_.remedy = need_.remedy;
         check_softness();
         choose_solvers();
+        check_resolution();
         choose_stiffness();
         check_give();
         choose_steps();
@@ -101,6 +105,7 @@ public:
 
 private:
     Scenario& scene() { return plan_.scenario; }
+    const Scenario& scene() const { return plan_.scenario; }
     RunSpec& run() { return plan_.scenario.run; }
     bool uses(const char* solver) const {
         return std::any_of(stages_.begin(), stages_.end(), [&](const StageView& s) { return *s.solver == solver; });
@@ -111,6 +116,42 @@ private:
     [[noreturn]] void refuse(const std::string& why) const {
         const AccuracySpec& asked = *plan_.scenario.run.accuracy;
         throw InputError({Fault{asked.where, "run.accuracy", share(accuracy_) + " cannot be reached: " + why}});
+    }
+
+    bool calms() const {
+        return std::any_of(stages_.begin(), stages_.end(), [](const StageView& s) {
+            return s.timeless() || s.damping->contact > 0.0 || s.damping->local > 0.0;
+        });
+    }
+
+    // Joints with springs rebound as they like, however small the restitution that is stated; damping takes it.
+    void check_restitution() const {
+        const bool hits = has_restitution(scene()) && burden_.speed > 0.0 && !calms();
+        if (!need_.why.empty() && (rebounds(scene()) || hits) && !uses("rigid"))
+            refuse("a restitution is for the rigid solver, but " + need_.why);
+    }
+
+    /// Refuses every joint whose stiffness is left open.
+    void ask_for_stiffness(const std::string& why) const {
+        std::vector<Fault> faults;
+        const auto missing = [&](const JointSpec& joint, const std::string& key, const std::string& meaning) {
+            faults.push_back(
+                {joint.where, "joints." + joint.name + "." + key,
+                 "is missing (number (Pa/m), > 0: " + meaning + "): " + why + ", which run.accuracy does not know"});
+        };
+        for (const JointSpec& joint : scene().joints) {
+            if (joint.normal_stiffness == 0.0) missing(joint, "normal_stiffness", "stress per closure");
+            if (joint.shear_stiffness == 0.0) missing(joint, "shear_stiffness", "stress per elastic shear displacement");
+        }
+        if (!faults.empty()) throw InputError(std::move(faults));
+    }
+
+    /// Movements that are asked for and are no more than what joints left open may close.
+    void check_resolution() const {
+        if ((!uses("explicit") && !uses("static")) || !calms()) return;
+        if (const std::string small = asked_below(scene(), accuracy_, burden_.mean_size); !small.empty())
+            ask_for_stiffness(small + " is no more than the accuracy leaves to joints (" +
+                              number(accuracy_ * burden_.mean_size) + " m)");
     }
 
     void check_softness() const {
@@ -136,17 +177,17 @@ private:
                                          : "it ends in equilibrium; " + need_.why);
             else
                 choose(key, *stage.solver = "explicit",
-                       need_.why.empty() ? "it ends in equilibrium, but something is driven" : need_.why);
+                       need_.why.empty()      ? "it ends in equilibrium, but something is driven"
+                       : need_.remedy.empty() ? need_.why
+                                              : need_.why + "; " + need_.remedy);
         }
     }
 
     /// Share of a block by which a joint may close.
     double closure_allowed() const {
-        if (uses("explicit") && !plan_.give_is_error) return 0.1 * accuracy_;
-        if (uses("explicit")) return std::pow(0.5 * accuracy_ / spring_error, 2);
-        if (uses("static"))
-            return 0.5 * accuracy_ / (plan_.give_is_error ? static_error * std::max(1.0, 0.5 * burden_.layers) : 5.0);
-        return 0.1 * accuracy_;
+        if (!need_.open_is_error || (!uses("explicit") && !uses("static"))) return 0.1 * accuracy_;
+        if (uses("explicit") && !need_.at_rest) return std::pow(0.5 * accuracy_ / spring_error, 2);
+        return 0.5 * accuracy_ / (static_error * std::max(1.0, 0.5 * burden_.layers));
     }
 
     void choose_stiffness() {

@@ -14,9 +14,10 @@ struct Decision {
 };
 
 struct Decisions {
-    std::vector<Decision> choices;        // empty without an accuracy
+    std::vector<Decision> choices;      // empty without an accuracy
     std::vector<std::string> warnings;  // where a key that is given may cost more than the accuracy
     bool give_is_error = false;         // what joints close is error, and no part of the answer
+    std::string remedy;                 // what a scenario may state so that it needs no springs; mostly empty
 };
 
 struct Plan : Decisions {

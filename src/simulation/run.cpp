@@ -64,8 +64,8 @@ Gauges gauges_of(const Simulation& simulation, bool energies) {
 
 // Due at or after a multiple of the interval; the slack absorbs the rounding of summed steps.
 constexpr double slack = 1e-9;
-bool due(double time, std::int64_t k, double every) { return time >= every * static_cast<double>(k) * (1.0 - slack); }
 double next_multiple(double time, double every) { return every * (std::floor(time / every * (1.0 + slack)) + 1.0); }
+bool due(double time, double last, double every) { return time >= next_multiple(last, every) * (1.0 - slack); }
 
 double last_time(const std::string& path, std::int64_t frames) {
     return frames > 0 ? ResultsReader(path).frame_times().at(static_cast<std::size_t>(frames - 1)) : -1.0;
@@ -74,7 +74,7 @@ double last_time(const std::string& path, std::int64_t frames) {
 }  // namespace
 
 Recorder::Recorder(const std::string& path, const Simulation& simulation, const std::vector<std::string>& overrides)
-    : info_{scenario_info(simulation, overrides), 0, {}},
+    : info_{scenario_info(simulation, overrides)},
       writer_(path, simulation.model(), run_info(simulation, overrides)),
       frame_every_(default_interval(simulation)) {
     add_histories(simulation);
@@ -86,9 +86,12 @@ Recorder::Recorder(const std::string& path, const Simulation& simulation, const 
       frame_every_(default_interval(simulation)),
       last_frame_time_(last_time(path, info.frames)) {
     add_histories(simulation);
-    for (std::size_t i = 0; i < histories_.size(); ++i)
-        for (const auto& [name, rows] : info.history_rows)
-            if (name == simulation.scenario().record.history[i].name) histories_[i].rows = rows;
+    auto memory = info_.memory.begin();
+    for (History& history : histories_) {
+        history.last = simulation.state().time;  // what was due by now has been written
+        for (const Probe& probe : history.probes)
+            if (probe.memory && memory != info_.memory.end()) probe.memory->restore(*memory++);
+    }
 }
 
 void Recorder::add_histories(const Simulation& simulation) {
@@ -125,12 +128,16 @@ void Recorder::sample(const Simulation& simulation, History& history) {
     std::vector<double> values;
     for (const Probe& probe : history.probes) values.push_back(probe.read(simulation.model(), simulation.state(), gauges));
     writer_.append_history(history.id, simulation.state().time, values);
-    ++history.rows;
+    history.last = simulation.state().time;
+}
+
+void Recorder::sample_all(const Simulation& simulation) {
+    for (History& history : histories_) sample(simulation, history);
 }
 
 void Recorder::begin_stage(const Simulation& simulation) {
     if (!simulation.recorded() || last_frame_time_ >= simulation.state().time) return;
-    for (History& history : histories_) sample(simulation, history);
+    if (!simulation.timeless()) sample_all(simulation);  // else nothing is in balance yet: the row is that of its end
     frame_and_restart(simulation);
 }
 
@@ -142,17 +149,18 @@ void Recorder::after_step(const Simulation& simulation) {
     if (!simulation.recorded()) return;
     const double time = simulation.state().time;
     for (History& history : histories_)
-        if (!history.every || due(time, history.rows, *history.every)) sample(simulation, history);
-    if (frame_every_ > 0.0 && time >= next_multiple(last_frame_time_, frame_every_) * (1.0 - slack))
-        frame_and_restart(simulation);
+        if (!history.every || due(time, history.last, *history.every)) sample(simulation, history);
+    if (frame_every_ > 0.0 && due(time, last_frame_time_, frame_every_)) frame_and_restart(simulation);
 }
 
 void Recorder::end_stage(const Simulation& simulation) {
-    if (simulation.recorded() && simulation.timeless())
-        for (History& history : histories_) sample(simulation, history);
-    if (simulation.recorded() && (simulation.timeless() || last_frame_time_ < simulation.state().time))
-        frame_and_restart(simulation);
-    if (simulation.state().stage + 1 < simulation.stage_count()) save_restart(simulation);  // the next one may be refused
+    const int stage = simulation.state().stage;
+    // A run that is resumed where a static stage had just ended has its row already.
+    const bool rest = simulation.timeless() && info_.stages_recorded <= stage;
+    info_.stages_recorded = stage + 1;
+    if (simulation.recorded() && rest) sample_all(simulation);
+    if (simulation.recorded() && (rest || last_frame_time_ < simulation.state().time)) frame_and_restart(simulation);
+    if (stage + 1 < simulation.stage_count()) save_restart(simulation);  // the next one may be refused
 }
 
 void Recorder::save_restart(const Simulation& simulation) {
@@ -160,6 +168,10 @@ void Recorder::save_restart(const Simulation& simulation) {
     writer_.flush();
     info_.frames = writer_.frames();
     info_.history_rows = writer_.history_rows();
+    info_.memory.clear();
+    for (const History& history : histories_)
+        for (const Probe& probe : history.probes)
+            if (probe.memory) info_.memory.push_back(probe.memory->values());
     write_restart(restart_file(), info_, simulation.state());
     restart_written_ = true;
     since_restart_.lap();

@@ -40,12 +40,13 @@ private:
     struct History {
         std::vector<Probe> probes;
         std::optional<double> every;
-        std::int64_t rows = 0;
+        double last = 0.0;  // s, of its last row
         int id = 0;
     };
     void add_histories(const Simulation& simulation);
     void frame_and_restart(const Simulation& simulation);
     void sample(const Simulation& simulation, History& history);
+    void sample_all(const Simulation& simulation);
 
     RestartInfo info_;
     ResultsWriter writer_;

@@ -284,7 +284,12 @@ void Simulation::check_stages() const {
         if (!at.time_step || scenario_.run.unchecked || at.solver != "explicit") continue;
         const StableStep stable = stable_step(model, placed_, state);
         const bool listed = i < static_cast<int>(scenario_.stages.size());
-        const int substeps = scenario_.run.substeps == 0 ? most_substeps : scenario_.run.substeps;
+        // Only small blocks that take several steps in one allow a longer one; in equilibrium none do (begin_substeps).
+        const int substeps = scenario_.run.substeps == 1 || at.until.equilibrium
+                                 ? 1
+                                 : substeps_of_step(model, state, block_limits(model, placed_, state),
+                                                    scenario_.run.substeps, *at.time_step, scenario_.run.step_fraction)
+                                       .count;
         if (*at.time_step > substeps * stable.estimate)
             faults.push_back({at.time_step_where, (listed ? "stages[" + std::to_string(i) + "]" : "run") + ".time_step",
                               refusal(stable)});

@@ -12,7 +12,8 @@
 namespace talus {
 namespace {
 
-constexpr double deep = 0.05;  // share of the thinner part: contact forces are still right, positions off by as much
+constexpr double many_steps = 1e8;  // a minute or two for a single block, hours for a small scene
+constexpr double deep = 0.05;       // share of the thinner part: contact forces are still right, positions off by as much
 
 std::vector<Verdict> judge_unbuilt(const std::vector<ExpectSpec>& expects, const Told& told) {
     std::vector<Verdict> verdicts;
@@ -65,6 +66,9 @@ Trial try_out(const Scenario& scenario, const std::map<std::string, Trial>& earl
         // Where one looks for it, to find no equilibrium is an answer like any other.
         const bool asked =
             std::ranges::any_of(expects, [](const ExpectSpec& e) { return e.probe.quantity == "equilibrium"; });
+        options.stage_begun = [&](const Simulation& s) {
+            if (const std::string warning = long_stage(s); !warning.empty()) told.warnings.push_back(warning);
+        };
         if (!asked) options.out_of_time = [&](const Simulation& s) { told.fault = out_of_time(s); };
         run(*simulation, options);
         told.verdict = simulation->verdict();
@@ -74,9 +78,8 @@ Trial try_out(const Scenario& scenario, const std::map<std::string, Trial>& earl
         told.fault = error.what();
     }
     if (simulation) {
-        told.warnings = simulation->report().warnings;
-        const std::vector<std::string> later = run_warnings(*simulation);
-        told.warnings.insert(told.warnings.end(), later.begin(), later.end());
+        for (const std::vector<std::string>& more : {simulation->report().warnings, run_warnings(*simulation)})
+            told.warnings.insert(told.warnings.end(), more.begin(), more.end());
     }
     Trial trial{watch ? watch->judge(told) : judge_unbuilt(expects, told), told.fault, scenario.run.solver};
     if (simulation) trial.solver = simulation->stage().solver;
@@ -102,6 +105,21 @@ std::vector<std::string> run_warnings(const Simulation& simulation) {
                       " m against each other; a shorter time step (run.time_step) or, for what stands, solver: static is "
                       "the remedy");
     return all;
+}
+
+std::string long_stage(const Simulation& simulation) {
+    const StageSpec& stage = simulation.stage();
+    if (simulation.timeless() || !stage.until.time) return {};
+    const double steps = *stage.until.time / simulation.state().stage_step;
+    if (!(steps >= many_steps)) return {};
+    char count[32];
+    std::snprintf(count, sizeof count, "%.1e", steps);
+    const std::string& remedy = simulation.decisions().remedy;
+    return "stage " + stage.name + " takes " + count + " steps of " + number(simulation.state().stage_step) + " s: " +
+           (!remedy.empty()                      ? remedy
+            : stage.solver == "rigid"            ? "a longer run.time_step takes fewer"
+            : simulation.scenario().run.accuracy ? "a larger run.accuracy, or softer joints, take fewer"
+                                                 : "softer joints, or solver: rigid where it will do, take fewer");
 }
 
 std::string out_of_time(const Simulation& simulation) {

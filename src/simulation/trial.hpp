@@ -27,6 +27,9 @@ std::vector<ExpectSpec> with_values(const std::vector<ExpectSpec>& expects, cons
 /// Sentences about how the run went, empty if nothing looks odd: energy from nowhere, deep overlaps.
 std::vector<std::string> run_warnings(const Simulation& simulation);
 
+/// What to say of a stage that has begun and will take very long; empty if it will not.
+std::string long_stage(const Simulation& simulation);
+
 /// What to say at the end of a stage that was to end in equilibrium and did not.
 std::string out_of_time(const Simulation& simulation);
 

@@ -13,9 +13,11 @@ namespace {
 // Of free fall within a step, the speed to which the rigid solver finds velocities, and a margin of ten.
 constexpr double rigid_speed = 1e-5;
 
-double last_change(const TimeTable& table) {  // s
-    const bool constant = std::ranges::all_of(table.value, [&](double v) { return v == table.value.front(); });
-    return constant ? 0.0 : table.time.back();
+// s, from which on the table has its last value: points that repeat it change nothing.
+double last_change(const TimeTable& table) {
+    std::size_t i = table.value.size();
+    while (i > 0 && table.value[i - 1] == table.value.back()) --i;
+    return i == 0 ? 0.0 : table.time[i];
 }
 
 double end_of_drive(const TimeTable& velocity) {  // s

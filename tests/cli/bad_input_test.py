@@ -160,7 +160,7 @@ class BadInput(Program):
     def test_a_result_of_another_version(self):
         self.write("slope.yaml", INCLINE)
         self.talus("run", "slope.yaml")
-        for name, version, commands in (("slope.h5", 1, ("info", "export")), ("slope.restart.h5", 6, ("resume",))):
+        for name, version, commands in (("slope.h5", 1, ("info", "export")), ("slope.restart.h5", 7, ("resume",))):
             with self.subTest(name):
                 path = self.folder / name
                 good = path.read_bytes()

@@ -37,8 +37,8 @@ public:
             t.look_ratio, t.look_distance, t.suspicious, t.now);
         each(t.earlier);
         const Course& c = s.course;
-        add(c.window, c.window_begin, c.next_look, c.looks, c.give, c.kinetic, c.kinetic_last, c.kinetic_before,
-            c.mean_time, c.verdict, c.certain_at);
+        add(c.window, c.window_begin, c.next_look, c.looks, c.give, c.kinetic, c.kinetic_last, c.kinetic_before, c.mean_time,
+            c.verdict, c.certain_at);
         for (const auto* list : {&c.sum, &c.mean, &c.velocity, &c.velocity_begin}) each(*list);
         for (const auto* list : {&c.turn_sum, &c.turn_mean, &c.speed, &c.speed_before, &c.reach}) each(*list);
         for (const auto* list : {&c.going, &c.rested, &c.no_further, &c.fell}) each(*list);
@@ -92,7 +92,7 @@ Model bonded_wall() {
 
 RestartInfo info_now(const ResultsWriter& writer) {
     return {"wall.yaml",       "title: A wall\n", test::run_info().scenario_hash,
-            {"run.threads=2"}, writer.frames(),   writer.history_rows()};
+            {"run.threads=2"}, writer.frames(),   writer.history_rows(), 0, {}};
 }
 
 }  // namespace
@@ -132,8 +132,14 @@ TEST_CASE("a restart without any contact or history reads back") {
 TEST_CASE("a restart knows its scenario and how far the results were") {
     const test::Folder folder;
     const std::string path = folder / "run.restart.h5";
-    const RestartInfo info{
-        "a.yaml", "title: x\n", 0xfedcba9876543210ULL, {"a=1", "b=[2, 3]"}, 17, {{"toe", 400}, {"crest", 0}}};
+    const RestartInfo info{"a.yaml",
+                           "title: x\n",
+                           0xfedcba9876543210ULL,
+                           {"a=1", "b=[2, 3]"},
+                           17,
+                           {{"toe", 400}, {"crest", 0}},
+                           2,
+                           {{1.5, -2.0}, {}, {0.25}}};
     write_restart(path, info, test::at_rest(test::wall(2, 1)));
     const RestartInfo again = read_restart_info(path);
     CHECK(again.scenario_file == info.scenario_file);
@@ -142,6 +148,8 @@ TEST_CASE("a restart knows its scenario and how far the results were") {
     CHECK(again.overrides == info.overrides);
     CHECK(again.frames == 17);
     CHECK(again.history_rows == info.history_rows);
+    CHECK(again.stages_recorded == 2);
+    CHECK(again.memory == info.memory);
 }
 
 TEST_CASE("a restart file that is not one is refused in one line") {

@@ -236,6 +236,31 @@ TEST_CASE("a step above what slow blocks allow ends in a report, not in energy f
     CHECK_THROWS_AS(run.to_the_end(), DivergenceError);
 }
 
+TEST_CASE("a step that is given may be longer than the limit only where substeps are taken") {
+    // Steps go as the square root of the size: the chip is stable below 8e-5 s, the block below ten times that.
+    const std::string scene = R"(
+gravity: [0, -9.81]
+materials: {rock: {density: 2500}}
+joints: {plane: {normal_stiffness: 1e10, shear_stiffness: 5e9, friction_angle_deg: 40}}
+blocks:
+  - {name: plane, rectangle: {corner: [-2, -1], size: [4, 1]}, held: true}
+  - {name: block, rectangle: {corner: [-0.5, 0], size: [1, 1]}}
+  - {name: chip, rectangle: {corner: [0.6, 0], size: [0.01, 0.01]}}
+)";
+    const auto begin = [&](const std::string& run) {
+        const Scenario scenario = scenario_of(scene + "run: {" + run + "}\n");
+        Simulation simulation(scenario, build(scenario));
+        simulation.begin_stage();
+        return simulation.state().substeps;
+    };
+    CHECK(begin("until: {time: 0.2}, time_step: 1.5e-4, substeps: 8") == 8);
+    CHECK_THROWS_WITH(begin("until: {time: 0.2}, time_step: 1.5e-4"), Catch::Contains("is above the stable step"));
+    CHECK_THROWS_WITH(begin("until: {time: 0.2, equilibrium: 1e-3}, time_step: 1.5e-4, substeps: 8"),
+                      Catch::Contains("is above the stable step"));
+    CHECK_THROWS_WITH(begin("until: {time: 0.2}, time_step: 2e-2, substeps: 8"),
+                      Catch::Contains("is above the stable step"));
+}
+
 TEST_CASE("three substeps are refused, and substeps of a solver that has no such step") {
     const auto refused = [](const std::string& rest, const std::string& why) {
         CHECK_THROWS_WITH(rubble(rest), Catch::Contains("run.substeps") && Catch::Contains(why));

@@ -282,3 +282,18 @@ TEST_CASE("results keep the verdict with its reason and the mechanism of each bl
     CHECK(file.numbers("/talus/verdict", "time").at(0) == simulation.verdict().time);
     CHECK(file.read<std::uint8_t>("/talus/verdict/block_mechanism") == std::vector<std::uint8_t>{0, 4});
 }
+
+TEST_CASE("loads that a table only repeats do not change any more") {
+    const std::string scene = R"(
+materials: {rock: {density: 2500}}
+joints: {joint: {normal_stiffness: 1e10, shear_stiffness: 5e9, friction_angle_deg: 40}}
+blocks:
+  - {name: ground, rectangle: {corner: [-2, -1], size: [4, 1]}, held: true}
+  - {name: block, rectangle: {corner: [-0.5, 0], size: [1, 1]}}
+run: {until: {time: 3}, damping: {local: 0.5}}
+)";
+    const auto verdict = [&](const std::string& gravity) { return verdict_on("gravity: " + gravity + scene).verdict; };
+    CHECK(verdict("{time: [0, 0.5, 100], y: [-9.0, -9.81, -9.81], x: [0, 0, 0]}") == Stability::stable);
+    CHECK(verdict("{time: [0, 0.5, 50, 100], y: [-9.0, -9.81, -9.81, -9.81], x: [0, 0, 0, 0]}") == Stability::stable);
+    CHECK(verdict("{time: [0, 0.5, 100], y: [-9.81, -9.81, -9.0], x: [0, 0, 0]}") == Stability::undecided);
+}

@@ -125,3 +125,16 @@ TEST_CASE("a run that ends too early passes no expectation") {
     e.value = 0.0, e.tolerance_absolute = 1.0;
     CHECK_FALSE(judge(e, "x", Signal{}).passed);
 }
+
+TEST_CASE("a bound that was never reached is told with its own side") {
+    ExpectSpec above = expect("value"), below = expect("value");
+    above.above = 5.0, below.below = 5.0;
+    for (ExpectSpec* e : {&above, &below}) {
+        e->at = 1.0;
+        const Verdict verdict = judge(*e, "displacement", Signal{{0.0, 0.05}, {0.0, 0.0}});
+        CHECK(std::isnan(verdict.measured));
+        CHECK_FALSE(verdict.passed);
+        CHECK(verdict.expected == 5.0);
+        CHECK(std::string(verdict.asked) == (e == &above ? "above" : "below"));
+    }
+}

@@ -5,6 +5,7 @@
 #include "dynamics/motion.hpp"
 #include "model/build.hpp"
 #include "model/measure.hpp"
+#include "scenario/reader.hpp"
 #include "support/catch.hpp"
 #include "support/scenes.hpp"
 
@@ -279,4 +280,38 @@ TEST_CASE("shear beyond friction is told with the number of faces") {
     CHECK(build(scene).report.warnings.at(0).find("on 1 face(s)") != std::string::npos);
     scene.joints[0].friction_angle = radians(40.0);
     CHECK(build(scene).report.warnings.empty());
+}
+
+TEST_CASE("the field by default grows with the weight of the rock itself, not of what lies in a region of it") {
+    const std::string scene = R"(
+materials: {host: {density: 2500}, ore: {density: 5000}}
+joints: {j: {normal_stiffness: 1e10, shear_stiffness: 5e9, friction_angle_deg: 40}}
+rock:
+  outline: [[0, 0], [10, 0], [10, 10], [0, 10]]
+  material: host
+  joint_sets: [{name: bed, angle_deg: 0, spacing: 2.5, origin: [0, 0], joint: j}]
+  regions: {pocket: {outline: [[0, 0], [2, 0], [2, 2.5], [0, 2.5]], material: ore}}
+  held: {bottom: true}
+initial_stress: {k0: 1}
+)";
+    const auto built = [&](const std::string& rest) { return build(read_scenario_text(scene + rest, "f.yaml", ".")); };
+    const auto largest = [](const Scene& of) {
+        double most = 0.0;
+        for (const JointFace& face : of.model.faces) most = std::max({most, face.sigma0, face.sigma1});
+        return most;
+    };
+    const std::string runs = "\nrun: {until: {time: 1}}\n", ramp = "gravity: {time: [0, 1], x: [0, 0], y: [0, -10]}";
+    // 7.5 m down, and 10 m down where the pocket stands between held rock and free rock.
+    const double deepest = largest(built("gravity: [0, -10]" + runs));
+    CHECK(deepest <= 10 * 25000.0 * (1 + 1e-12));
+    CHECK(deepest >= 7.5 * 25000.0 * (1 - 1e-12));
+
+    // The weight is that with which the run begins: of a static stage, that at the end of its table.
+    const Scene weightless = built(ramp + runs);
+    CHECK(largest(weightless) == 0.0);
+    REQUIRE_FALSE(weightless.report.warnings.empty());
+    CHECK_THAT(weightless.report.warnings.front(), Catch::Matchers::Contains("give initial_stress.unit_weight"));
+    const Scene still = built(ramp + "\nrun: {solver: static, until: {equilibrium: 1e-6}}\n");
+    CHECK(largest(still) == Approx(deepest).epsilon(1e-12));
+    CHECK(still.report.warnings.empty());
 }

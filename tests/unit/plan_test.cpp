@@ -52,16 +52,60 @@ TEST_CASE(
     "motion is left to the rigid solver, equilibrium to the static one, and what asks for springs to the explicit one") {
     CHECK(solver(moves) == "rigid");
     CHECK(solver("until: {equilibrium: 1e-6}, accuracy: 1e-3") == "static");
-    CHECK(solver("until: {time: 1}, accuracy: {joint_stress: 1e-2}") == "explicit");
+    const std::vector<std::string> given{stiff, shear};
+    CHECK(solver("until: {time: 1}, accuracy: {joint_stress: 1e-2}", "", given) == "explicit");
     CHECK(solver("until: {equilibrium: 1e-6}, accuracy: {joint_stress: 1e-2}") == "static");
     CHECK(solver(moves + ", damping: {contact: 1e-3}") == "explicit");
-    CHECK(solver(moves, "record: {history: [{joint: [0.5, 0], quantity: normal_stress}]}") == "explicit");
+    CHECK(solver(moves, "record: {history: [{joint: [0.5, 0], quantity: normal_stress}]}", given) == "explicit");
     CHECK(solver(moves, "record: {history: [{block: 'block[2]'}]}") == "rigid");
-    CHECK(solver(moves, "expect: [{quantity: stable_step, above: 0}]") == "explicit");
-    CHECK(solver(moves, "expect: [{quantity: energy, component: strain, above: 0}]") == "explicit");
+    CHECK(solver(moves, "expect: [{quantity: stable_step, above: 0}]", given) == "explicit");
+    CHECK(solver(moves, "expect: [{quantity: energy, component: strain, above: 0}]", given) == "explicit");
     CHECK(solver(moves, "expect: [{quantity: energy, component: kinetic, above: 0}]") == "rigid");
-    CHECK(solver(moves, "expect: [{quantity: frequency, component: y, block: 'block[0]', above: 0}]") == "explicit");
-    CHECK(solver(moves, "", {"joints.face.dilation_angle_deg=5"}) == "explicit");
+    CHECK(solver(moves, "expect: [{quantity: frequency, component: y, block: 'block[0]', above: 0}]", given) == "explicit");
+    CHECK(solver(moves, "", {stiff, shear, "joints.face.dilation_angle_deg=5"}) == "explicit");
+    CHECK_THAT(refusal(moves, "", {"joints.face.dilation_angle_deg=5"}),
+               Contains("joints.face.normal_stiffness: is missing") && Contains("dilation presses on joints"));
+}
+
+TEST_CASE("where what joints close is the answer, their stiffness must be given") {
+    const auto refused = [](const std::string& run, const std::string& rest, const std::string& why) {
+        CAPTURE(run, rest);
+        CHECK_THAT(refusal(run, rest), Contains("f.yaml:4 joints.face.normal_stiffness: is missing (number (Pa/m), > 0: "
+                                                "stress per closure): " +
+                                                why) &&
+                                           Contains("f.yaml:4 joints.face.shear_stiffness: is missing"));
+        CHECK(refusal(run, rest, {stiff, shear}) == "accepted");
+        CHECK_THAT(refusal(run, rest, {stiff}), !Contains("normal_stiffness") && Contains("joints.face.shear_stiffness"));
+    };
+    const std::string still = "until: {equilibrium: 1e-6}, accuracy: 1e-2", calm = moves + ", damping: {local: 0.7}";
+    const std::string stress = "record: {history: [{joint: [0.5, 0], name: foot}]}";  // forces, opening, slip
+    refused(moves, "expect: [{quantity: frequency, component: y, block: 'block[0]', value: 100, tolerance: 0.1}]",
+            "an expected frequency depends on the stiffness of joints");
+    refused(still, "expect: [{quantity: max_overlap, value: 1e-5, tolerance: 0.1}]", "an expected max_overlap");
+    refused(still, "expect: [{quantity: opening, joint: [0.5, 0], below: -1e-6}]", "an expected opening");
+    refused(still, "expect: [{quantity: energy, component: strain, value: 1, tolerance: 0.1}]", "an expected energy");
+    refused(moves, stress, "normal_stress in foot depends on the stiffness of joints");
+    refused("until: {time: 1}, accuracy: {joint_stress: 1e-2}", "", "the stress of joints is asked for");
+    refused(calm, stress + "\nbody_acceleration: {time: [0, 1], x: [0, 3], y: [0, 0]}", "normal_stress in foot");
+    refused(still, "initial_stress: {k0: 1, left: true}\nrecord: {history: [{block: 'block[0]'}]}",
+            "joints under initial stress are loaded or relieved");
+    // Forces in equilibrium are what equilibrium makes them, whatever the stiffness.
+    for (const std::string& run : {still, calm}) CHECK(refusal(run, stress) == "accepted");
+    CHECK(refusal("until: {equilibrium: 1e-6}, accuracy: {joint_stress: 1e-2}", stress) == "accepted");
+}
+
+TEST_CASE("a movement that is no more than joints close is not left to rigid ones, nor to a stiffness that is made up") {
+    // The top of three blocks sinks by about rho g (3 + 2 + 1) / kn = 1.5e-3 m at 1e8 Pa/m.
+    const auto sinks = [](const std::string& by) {
+        return "expect: [{quantity: displacement, component: y, block: 'block[2]', value: " + by + ", tolerance: 0.1}]";
+    };
+    const std::vector<std::string> soft{"joints.face.normal_stiffness=1e8", "joints.face.shear_stiffness=1e8"};
+    CHECK(solver(moves, sinks("-1.5e-3"), soft) == "explicit");
+    CHECK(solver(moves, sinks("-0.15"), soft) == "rigid");
+    const std::string still = "until: {equilibrium: 1e-6}, accuracy: 1e-2";
+    CHECK_THAT(refusal(still, sinks("-1.5e-3")), Contains("joints.face.normal_stiffness: is missing") &&
+                                                     Contains("an expected displacement of -0.0015 m is no more than"));
+    CHECK(refusal(still, "expect: [{quantity: max_displacement, below: 1e-3}]") == "accepted");
 }
 
 TEST_CASE("blocks that fly rebound by their springs, unless a restitution is stated") {
@@ -69,7 +113,12 @@ TEST_CASE("blocks that fly rebound by their springs, unless a restitution is sta
         tilted{"blocks[1].rectangle.angle_deg=5", "blocks[1].repeat.count=1"};
     CHECK(solver(moves, "", above) == "explicit");
     CHECK(solver(moves, "", tilted) == "rigid");  // it stands on a corner
-    CHECK(solver(moves, "", {above[0], "joints.face.restitution=0.5"}) == "rigid");
+    for (const char* stated : {"0", "0.001", "0.5"})
+        CHECK(solver(moves, "", {above[0], "joints.face.restitution=" + std::string(stated)}) == "rigid");
+    const Plan open = plan(moves, "", above);
+    REQUIRE(open.warnings.size() == 1);
+    CHECK_THAT(open.warnings[0], Contains("state a restitution of the joints"));
+    CHECK(plan(moves + ", damping: {contact: 1e-4}", "", above).warnings.empty());
     CHECK_THAT(refusal(moves, "expect: [{quantity: energy, component: strain, above: 0}]", {"joints.face.restitution=0.5"}),
                Contains("f.yaml:8 run.accuracy: 0.001 cannot be reached: a restitution is for the rigid solver"));
 }

@@ -164,6 +164,9 @@ TEST_CASE("angular momentum counts both the path of the centroid and the spin") 
     spec.quantity = "momentum";
     spec.component = "y";
     CHECK(bench.read(spec) == 1e4);
+    // What is driven along an axis has the momentum that drives it, and is not free.
+    bench.model.blocks.inv_mass[1].y() = 0.0;
+    CHECK(bench.read(spec) == 0.0);
 }
 
 TEST_CASE("energy drift is the change of the total since the last reset over the largest energy that moved") {
