@@ -17,11 +17,21 @@ double time_of_impact(double gap, double speed, double acceleration, double dt) 
     return std::clamp(2.0 * gap / (root - speed), 0.0, dt);
 }
 
+/// m/s, at which the two would come together at an end without the impulse there; 0 if there is none.
+double approach_without(const Touch& c, const Bodies& bodies, int end) {
+    if (c.p[end] == 0.0) return 0.0;
+    return (end == 0 ? c.k00 : c.k11) * c.p[end] - normal_velocity(c, bodies.velocity, end);
+}
+
 }  // namespace
 
 bool Touches::moved_by_impact(const Bodies& bodies, int body) const {
     const Softness& soft = bodies.softness[body];
     return impact_[body] <= 1.0 && soft.x + soft.y + soft.spin > 0.0;
+}
+
+double Touches::impact_of(const Bodies& bodies, int body) const {
+    return moved_by_impact(bodies, body) ? impact_[body] : none;
 }
 
 // What closes faster than by what it gains in half a step hits at a time within the step, and bounces, if it does, from two
@@ -47,7 +57,7 @@ void Touches::find_impacts(const Bodies& bodies, std::span<const Velocity> befor
             const double bent = std::abs(bend(manifold_[i], bodies, before, from_a_[i], c, end).x());
             const double way = at_the_latest * dt * approach + 0.125 * bent * dt * dt;  // in half of the step
             // What bounces does so though it is inside already: two tips that pass each other are seen when one is in a
-            // face.
+            // face, and another impact of the step before may have sent it there.
             const bool in_reach = gap <= way && (gap >= -way || rebound_[i] > 0.0);
             hits[end] = in_reach && c.p[end] == 0.0 && -change * dt > slowest * near_[2 * i + end];
             if (!hits[end]) continue;
@@ -120,23 +130,54 @@ void Touches::add_earlier() {
     }
 }
 
-double Touches::energy_of_later_landings(const Bodies& bodies, double speed, double together) const {
+/// Whether two come together before the end of the step because an impact before the middle of it has taken one further.
+bool Touches::overtakes(std::size_t touch, int end, const Bodies& bodies, std::span<const Velocity> before,
+                        double dt) const {
+    const Touch& c = touches_[touch];
+    const Velocity a = uneven_way(bodies, before, c.a, dt), b = uneven_way(bodies, before, c.b, dt);
+    const double further = c.nx * (b.x - a.x) + c.ny * (b.y - a.y) + c.arm_b[end] * b.spin - c.arm_a[end] * a.spin;
+    return manifold_[touch].gap[end] + 0.5 * dt * normal_velocity(c, bodies.velocity, end) + further < 0.0;
+}
+
+double Touches::energy_of_later_landings(const Bodies& bodies, std::span<const Velocity> before, double speed,
+                                         double together, double dt) const {
     double energy = 0.0;
     for (std::size_t i = 0; i < touches_.size(); ++i) {
         const Touch& c = touches_[i];
-        double first = none;  // share of the step
-        for (const int body : {c.a, c.b})
-            if (moved_by_impact(bodies, body)) first = std::min(first, impact_[body]);
+        const double first = std::min(impact_of(bodies, c.a), impact_of(bodies, c.b));
         for (int end = 0; end < c.ends && rebound_[i] > 0.0 && first < none; ++end) {
             const End kind = end_[2 * i + end];
             const bool later = kind == End::bounces ? hit_[2 * i + end] > first + together : kind == End::comes_near;
-            if (!later || c.p[end] == 0.0) continue;
-            const double k = end == 0 ? c.k00 : c.k11;
-            const double approach = k * c.p[end] - normal_velocity(c, bodies.velocity, end);
-            if (approach > speed) energy += 0.5 * rebound_[i] * rebound_[i] * approach * approach / k;
+            const double approach = !later                                  ? 0.0
+                                    : c.p[end] > 0.0                        ? approach_without(c, bodies, end)
+                                    : overtakes(i, end, bodies, before, dt) ? -normal_velocity(c, bodies.velocity, end)
+                                                                            : 0.0;
+            if (approach > speed)
+                energy += 0.5 * rebound_[i] * rebound_[i] * approach * approach / (end == 0 ? c.k00 : c.k11);
         }
     }
     return energy;
+}
+
+// The work of an impulse is p (u_before + u) / 2, whatever else acts at the same time: nothing with e = 1, as in an impact
+// of two.
+bool Touches::land_together(const Bodies& bodies, std::span<const Velocity> before, double speed, double dt) {
+    bool any = false;
+    for (std::size_t i = 0; i < touches_.size(); ++i) {
+        Touch& c = touches_[i];
+        const double first = std::min(impact_of(bodies, c.a), impact_of(bodies, c.b));
+        for (int end = 0; end < c.ends && rebound_[i] > 0.0 && first < none; ++end) {
+            const std::size_t k = 2 * i + end;
+            if (end_[k] != End::comes_near || approach_without(c, bodies, end) <= speed) continue;
+            any = true;
+            const double change = normal_velocity(c, before, end);
+            c.least[end] = std::max(c.least[end], -rebound_[i] * change);
+            end_[k] = End::bounces;
+            hit_[k] = impact_[c.a] = impact_[c.b] = first;
+            landed_[k] = manifold_[i].gap[end] + dt * ((first - 0.5) * change + (1.0 - first) * c.least[end]);
+        }
+    }
+    return any;
 }
 
 }  // namespace talus::rigid

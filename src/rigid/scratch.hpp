@@ -16,6 +16,7 @@ struct Scratch {
     Motion start;                        // of the blocks, at the start of the step
     std::vector<Vec2> middle;            // [nb] m, centroids in the middle of it
     std::vector<Velocity> before;        // [nq] at the start of the step
+    std::vector<Velocity> kicked;        // [nq] with weight and loads, before contacts act
     std::vector<Velocity> displacement;  // [nq] m, m, rad, that puts right what has drifted; empty = nothing
     std::vector<Force> external;         // [nb] weight and loads
     std::vector<Force> contact;          // [nb] from other bodies

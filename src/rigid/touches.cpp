@@ -18,6 +18,7 @@ constexpr int few = 1000;  // contacts: one thread has looked at them by the tim
 // a row of others catch on steps of that height, smaller, and they catch on what the solver leaves of overlap.
 // Came in: of an overlap above this it counts through which face the two came together. Resting and sliding blocks stay
 // below a hundredth of it; ten times as much, and steps that are a thousandth as high as a block are run over.
+constexpr double as_far = 1e-6;  // of a speed: who is faster by less comes no further
 constexpr double touching = 1e-9, narrow = 1e-5, came_in = 1e-4;
 
 // A block of width w and radius of inertia r that rocks brings its corner down with 1.5 (w2 / 12 r2) of free fall, its
@@ -78,6 +79,19 @@ double Touches::fastest(const Model& model, const Motion& motion, const Bodies& 
     return fastest;
 }
 
+bool Touches::outrun(const Model& model, const Placed& placed, const Bodies& bodies) {
+    bool any = false;
+    for (BlockId b = 0; b < model.blocks.size() && !any; ++b)
+        any = fastest_point(model, placed.block[b].position, bodies, b, false) > (1.0 + as_far) * speed_[b];
+    if (!any) return false;
+    seen_ = speed_;
+    for (BlockId b = 0; b < model.blocks.size(); ++b)
+        seen_[b] = std::max(seen_[b], fastest_point(model, placed.block[b].position, bodies, b, true));
+    return true;
+}
+
+double Touches::fastest_seen() const { return seen_.empty() ? 0.0 : *std::ranges::max_element(seen_); }
+
 Manifold Touches::look_at(const Model& model, const Placed& placed, const Contact& c, const Bodies& bodies,
                           std::span<const Velocity> before, double dt, int& hint) const {
     const BlockId a = model.parts.block[c.part_a], b = model.parts.block[c.part_b];
@@ -104,7 +118,10 @@ void Touches::find(const Model& model, const Placed& placed, const State& state,
     if (static_cast<int>(hint_.size()) != n) hint_.assign(n, -1);
     found_.resize(n);
     speed_.resize(nb);
-    for_all(nb, few, [&](int b) { speed_[b] = fastest_point(model, placed.block[b].position, bodies, b, rebounds); });
+    for_all(nb, few, [&](int b) {
+        const double known = fastest_point(model, placed.block[b].position, bodies, b, rebounds);
+        speed_[b] = seen_.empty() ? known : std::max(known, seen_[b]);
+    });
     for_all(n, few,
             [&](int i) { found_[i] = look_at(model, placed, state.contacts.list[i], bodies, before, dt, hint_[i]); });
 

@@ -18,6 +18,12 @@ public:
     void find(const Model& model, const Placed& placed, const State& state, const Bodies& bodies,
               std::span<const Velocity> before, bool rebounds, double fall, double dt);
 
+    /// Whether a block moves faster after the impacts than was known when touches were looked for, and so may have come to
+    /// others; the next `find` looks as far as these speeds reach too, until they are forgotten.
+    bool outrun(const Model& model, const Placed& placed, const Bodies& bodies);
+    void forget_speeds() { seen_.clear(); }
+    double fastest_seen() const;  // m/s
+
     /// The two parts that lie deepest in each other, for the size of the thinner one, of those that `find` looked at.
     struct Deepest {
         int slot = -1;       // in the contact list, -1 = no two
@@ -56,7 +62,12 @@ public:
     /// J, with which ends that have a restitution came down faster than `speed` (m/s) later in this step than another impact
     /// of their body (by more than the share `together` of it). Their impulses are guesses: those that were seen coming
     /// bounce as if nothing had been before, the others are stopped.
-    double energy_of_later_landings(const Bodies& bodies, double speed, double together) const;
+    double energy_of_later_landings(const Bodies& bodies, std::span<const Velocity> before, double speed, double together,
+                                    double dt) const;
+
+    /// Those that were not seen coming take part in the impact of their body, u >= -e u_before: nothing is lost by the
+    /// guess. False if there are none; else impulses have to be found again.
+    bool land_together(const Bodies& bodies, std::span<const Velocity> before, double speed, double dt);
 
     /// m, m, rad, after the impulses were found: by how much a body goes further in this step than with the mean of its
     /// velocities before and after, for an impact that is not in the middle of it.
@@ -66,6 +77,7 @@ private:
     Manifold look_at(const Model& model, const Placed& placed, const Contact& c, const Bodies& bodies,
                      std::span<const Velocity> before, double dt, int& hint) const;
     bool moved_by_impact(const Bodies& bodies, int body) const;  // in this step
+    double impact_of(const Bodies& bodies, int body) const;  // share of the step before it is moved by one; above 1: none
     void find_turns(const State& state, std::span<const Velocity> before);
     double share_of_fall(const Model& model, const State& state, const Bodies& bodies, std::size_t touch) const;
     void judge_ends(const Model& model, const State& state, const Bodies& bodies, std::span<const Velocity> before,
@@ -75,6 +87,7 @@ private:
     std::span<const Velocity> ahead_of_contacts(std::size_t touch, const Bodies& bodies) const {
         return slow_[touch] < 1.0 ? carried_ : bodies.velocity;
     }
+    bool overtakes(std::size_t touch, int end, const Bodies& bodies, std::span<const Velocity> before, double dt) const;
     void find_uneven(const Bodies& bodies, std::span<const Velocity> before);
     void take_to_time_of_impact(const Bodies& bodies, std::span<const Velocity> before, double exact, double dt,
                                 std::span<Velocity> displacement) const;
@@ -105,6 +118,7 @@ private:
     std::vector<int> hint_;              // [contacts] see find_manifold
     std::vector<Manifold> found_;        // [contacts]
     std::vector<double> speed_;          // [nb] m/s
+    std::vector<double> seen_;           // [nb] m/s, after impacts; empty = nothing
 };
 
 }  // namespace talus::rigid

@@ -40,9 +40,12 @@ constexpr double unsolved = 1e-3;
 
 // Two bounces of one block within a step: what the first does to the second is not known before. Steps are cut where the
 // second has more than this share of the energy of all that moves; a tenth of it would cut every step of a heap of a
-// thousand blocks that clatters, for what nobody sees.
+// thousand blocks that clatters, for what nobody sees. The next step begins whole again, so that a row of impacts costs so
+// many steps as there are impacts, each tried as often as it is halved.
 constexpr double worth_a_cut = 1e-3;
-constexpr int most_cuts = 6;  // halvings: what follows faster, such as both corners of an edge, lands together
+constexpr int most_cuts = 16;  // halvings: what follows faster, such as both corners of an edge, lands together
+
+constexpr int most_looks = 8;  // for touches, with the speeds after the impacts of the look before; a step has one or two
 
 constexpr int energy_interval = 100;
 constexpr int most_breaks = 50;  // rounds of breaking bonds within a step
@@ -221,8 +224,27 @@ bool Simulation::half_step_rigid(double dt) {
     r.fastest = rigid::Touches::fastest(model_, state_.motion, bodies);
     if (!short_enough_rigid(r.fastest)) return false;
     const bool rebounds = std::ranges::any_of(model_.joints, [](const Joint& j) { return j.restitution > 0.0; });
-    const double reach = dt * (rebounds ? rigid::Touches::fastest(model_, state_.motion, bodies, rebounds) : r.fastest);
-    renew_pairs_rigid(reach);
+    r.kicked = bodies.velocity;
+    r.touches.forget_speeds();
+    for (int look = 1;; ++look) {
+        find_and_solve_rigid(rebounds, dt);
+        if (!short_enough_rigid(rigid::Touches::fastest(model_, state_.motion, bodies)) || !one_by_one_rigid(dt))
+            return false;
+        // Whom an impact has set in motion may come to others in this very step.
+        if (!rebounds || look == most_looks || !r.touches.outrun(model_, placed_, bodies)) break;
+        bodies.velocity = r.kicked;
+    }
+    r.touches.add_earlier();
+    lap(Part::sum);
+    return true;
+}
+
+/// Impulses of all that may touch in this step, and the velocities after it.
+void Simulation::find_and_solve_rigid(bool rebounds, double dt) {
+    rigid::Scratch& r = *rigid_;
+    Bodies& bodies = *r.bodies;
+    const double fastest = rebounds ? rigid::Touches::fastest(model_, state_.motion, bodies, rebounds) : r.fastest;
+    renew_pairs_rigid(dt * std::max(fastest, r.touches.fastest_seen()));
     if (r.renewed) {
         r.touches.forget_hints();
         if (r.bonds)
@@ -241,18 +263,29 @@ bool Simulation::half_step_rigid(double dt) {
                  .solve(r.touches.list(), bodies.softness, bodies.velocity,
                         {rigid_resolution(dt), unknown ? first_sweeps : sweeps})
                  .left;
-    r.touches.add_earlier();
-    lap(Part::sum);
-    return short_enough_rigid(rigid::Touches::fastest(model_, state_.motion, bodies)) && one_by_one_rigid();
 }
 
-/// Whether each bounce of a block has a step of its own, as far as it matters; if not, steps are cut.
-bool Simulation::one_by_one_rigid() {
-    if (state_.step_halvings >= most_cuts) return true;
-    const Bodies& bodies = *rigid_->bodies;
-    const double later = rigid_->touches.energy_of_later_landings(bodies, 2.0 * fall_rigid() * state_.stage_step,
-                                                                  std::ldexp(1.0, state_.step_halvings - most_cuts));
+/// Whether each bounce of a block has a step of its own, as far as it matters; if not, steps are cut. What is left lands
+/// together.
+bool Simulation::one_by_one_rigid(double dt) {
+    rigid::Scratch& r = *rigid_;
+    Bodies& bodies = *r.bodies;
+    const double slow = 2.0 * fall_rigid() * state_.stage_step;
+    const double together = std::ldexp(1.0, std::min(state_.step_halvings - most_cuts, 0));
+    const double later = r.touches.energy_of_later_landings(bodies, r.before, slow, together, dt);
     if (later == 0.0) return true;
+    if (state_.step_halvings < most_cuts && worth_a_cut_rigid(later)) {
+        ++state_.step_halvings;
+        return false;
+    }
+    while (r.touches.land_together(bodies, r.before, slow, dt))
+        r.left = r.solver.solve(r.touches.list(), bodies.softness, bodies.velocity, {rigid_resolution(dt), sweeps}).left;
+    return true;
+}
+
+/// Of the energy of later landings (J).
+bool Simulation::worth_a_cut_rigid(double later) const {
+    const Bodies& bodies = *rigid_->bodies;
     double kinetic = 0.0;
     for (BlockId b = 0; b < model_.blocks.size(); ++b) {
         if (model_.blocks.held(b)) continue;
@@ -261,9 +294,7 @@ bool Simulation::one_by_one_rigid() {
         kinetic += 0.5 * (model_.blocks.mass[b] * at(v, state_.motion.position[b] - bodies.position[q]).squaredNorm() +
                           model_.blocks.inertia[b] * v.spin * v.spin);
     }
-    if (later <= worth_a_cut * kinetic) return true;
-    ++state_.step_halvings;
-    return false;
+    return later > worth_a_cut * kinetic;
 }
 
 /// True if some bond broke: the step has to be done again without it.

@@ -129,7 +129,9 @@ private:
     bool half_step_rigid(double dt);
     void finish_step_rigid(double dt);
     bool short_enough_rigid(double speed);
-    bool one_by_one_rigid();
+    bool one_by_one_rigid(double dt);
+    bool worth_a_cut_rigid(double later) const;
+    void find_and_solve_rigid(bool rebounds, double dt);
     void check_overlaps_rigid() const;
     void renew_pairs_rigid(double reach);
     bool break_bonds_rigid(double dt);
