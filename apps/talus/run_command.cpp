@@ -114,8 +114,6 @@ int carry_out(Simulation& simulation, Recorder& recorder, Watch* watch, std::siz
         std::fflush(stdout);
     };
     options.progress = [&](const Simulation& s) { progress(s); };
-    std::string unsettled;
-    options.out_of_time = [&](const Simulation& s) { unsettled += out_of_time(s) + "\n"; };
     options.interrupted = [] { return asked_to_stop.load(); };
     if (entry == Entry::resumed) progress.stage_begun(simulation);
 
@@ -159,7 +157,7 @@ int carry_out(Simulation& simulation, Recorder& recorder, Watch* watch, std::siz
             print_error_estimate(estimate_error(simulation, steps, {end, verdicts.end()}),
                                  simulation.scenario().run.accuracy);
     }
-    std::printf("%s", unsettled.c_str());
+    for (const Unsettled& stage : simulation.state().unsettled) std::printf("%s\n", out_of_time(simulation, stage).c_str());
     return failed > 0 || outcome == Outcome::no_equilibrium ? not_met : ok;
 }
 

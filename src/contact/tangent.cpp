@@ -67,7 +67,7 @@ PressedSprings springs_of(const Model& model, const Placed& placed, std::span<co
 }  // namespace
 
 Tangent contact_tangent(const Model& model, const Placed& placed, std::span<const std::uint8_t> broken,
-                        const Contact& contact, const Reaction& reaction) {
+                        const Contact& contact, const Reaction& reaction, Shear shear) {
     const PlacedBlock& a = placed.block[model.parts.block[contact.part_a]];
     const PlacedBlock& b = placed.block[model.parts.block[contact.part_b]];
     const Vec2 d = b.position - a.position, n = contact.normal, at = contact.point - a.position;
@@ -87,10 +87,11 @@ Tangent contact_tangent(const Model& model, const Placed& placed, std::span<cons
 
     const Vector6 along = sum.pair(at, perp(n)), across = sum.pair(at, n);
     const double ks = joint.ks * contact.length, force = contact.shear_force;
-    if (!contact.sliding) {
+    const bool held_by_friction = shear == Shear::sticks && contact.strength > 0.0;
+    if (!contact.sliding || held_by_friction) {
         sum.add(ks, along, along);
         const bool even = force * force >= (1.0 - evenly) * 2.0 * ks * contact.shear_energy;
-        if (even) sum.add(force / contact.length, along, length);
+        if (even && !held_by_friction) sum.add(force / contact.length, along, length);
     } else {
         const double side = force < 0.0 ? -1.0 : 1.0;
         const double friction = joint.weakens ? joint.tan_friction_residual : joint.tan_friction;

@@ -47,6 +47,7 @@ std::uint64_t state_hash(const Model& model, const State& state) {
     const Statics& statics = state.statics;
     hash << statics.load_share << statics.damping << statics.shift << statics.now.ratio;
     hash << static_cast<std::uint64_t>(statics.now.iterations);
+    for (const Unsettled& stage : state.unsettled) hash << stage.stage << stage.ratio;
     hash << static_cast<std::uint64_t>(state.unsolved.steps) << state.unsolved.way;
     hash << static_cast<int>(state.course.verdict) << state.course.next_look << state.course.kinetic_last;
     for (std::size_t b = 0; b < state.course.speed.size(); ++b)

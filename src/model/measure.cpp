@@ -49,10 +49,12 @@ double out_of_balance(const Blocks& blocks, BlockId b, const Force& load) {
     return std::hypot(x, y, couple);
 }
 
-double unbalanced_ratio(const Model& model, const State& state) {
+double unbalanced_ratio(const Model& model, const State& state) { return unbalance(model, state).ratio(); }
+
+Unbalance unbalance(const Model& model, const State& state) {
     const std::vector<double> pressed = contact_forces(model, state.contacts);
     const double gravity = std::hypot(model.gravity_x(state.stage_time), model.gravity_y(state.stage_time));
-    double largest = 0.0, contact_sum = 0.0, weight_sum = 0.0;
+    Unbalance found;
     int moving = 0;
     for (BlockId b = 0; b < model.blocks.size(); ++b) {
         if (state.removed[b] || model.blocks.held(b)) continue;
@@ -62,12 +64,13 @@ double unbalanced_ratio(const Model& model, const State& state) {
             load.force -= state.damping[b].force;
             load.torque -= state.damping[b].torque;
         }
-        largest = std::max(largest, out_of_balance(model.blocks, b, load));
-        contact_sum += pressed[b];
-        weight_sum += model.blocks.mass[b] * gravity;
+        found.largest = std::max(found.largest, out_of_balance(model.blocks, b, load));
+        found.pressed += pressed[b];
+        found.weight += model.blocks.mass[b] * gravity;
     }
-    if (largest == 0.0) return 0.0;
-    return largest * moving / std::max(contact_sum, weight_sum);
+    found.pressed /= std::max(moving, 1);
+    found.weight /= std::max(moving, 1);
+    return found;
 }
 
 Vec2 displacement(const Model&, const State& state, BlockId b, const Vec2& start_point) {

@@ -4,6 +4,8 @@
 #include "model/model.hpp"
 #include "model/state.hpp"
 
+#include <algorithm>
+
 namespace talus {
 
 /// J per m of thickness. Stored energies at this instant, dissipated and external work since the last reset.
@@ -26,6 +28,15 @@ double kinetic_energy(const Model& model, const State& state);
 /// (or of the weights, whichever is larger); torques count divided by the radius of gyration, held and driven axes not at
 /// all. Dimensionless; 0 in equilibrium, infinite if nothing but an applied load acts.
 double unbalanced_ratio(const Model& model, const State& state);
+
+/// N, what the unbalanced ratio is made of.
+struct Unbalance {
+    double largest = 0.0;  // force out of balance, of a block
+    double pressed = 0.0;  // mean sum of contact force magnitudes
+    double weight = 0.0;   // mean
+    double ratio() const { return largest == 0.0 ? 0.0 : largest / std::max(pressed, weight); }
+};
+Unbalance unbalance(const Model& model, const State& state);
 
 /// N, what is left over of a load along the axes in which the block is free; a torque counts divided by the radius of
 /// gyration.

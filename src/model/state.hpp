@@ -67,6 +67,8 @@ struct Statics {
     std::vector<Force> held_back;  // [nb] out of balance when the stage began
     double load_share = 1.0;       // of it that acts
     double load_rate = 0.0;        // per iteration
+    double load_lag = 0.0;         // largest force out of balance, as a share of what the load does, see static_solver.hpp
+    double pressed = 0.0;          // N, mean contact force of a block when the stage began
     std::vector<Vec2> position;    // [nb] m, at the start of the window from which damping is taken
     std::vector<double> angle;     // [nb] rad
     std::vector<Force> load;       // [nb]
@@ -75,6 +77,7 @@ struct Statics {
     double shift = 0.0;            // of the matrix of Newton's method, in scaled masses
     std::int64_t polish_at = 0;    // iteration at which Newton's method is tried next
     std::int64_t patience = 0;     // iterations to wait when it fails next
+    double push = 0.0;             // off the next equilibrium that is unstable, in steps of Newton::unstable
     std::vector<Vec2> start;       // [nb] m, position at the start of the stage
     std::int64_t look_at = 0;      // iteration of the next look whether something keeps moving
     double look_share = 0.0;       // of the load, what the last one saw
@@ -84,6 +87,12 @@ struct Statics {
     StaticEvidence now;
     std::vector<StaticEvidence> earlier;  // static stages that are over
     std::vector<double> newton_ratios;    // unbalanced after each step of Newton that helped, of all static stages
+};
+
+/// A stage that was to end in equilibrium and ran out of time or iterations, or in which something keeps moving.
+struct Unsettled {
+    int stage = 0;
+    double ratio = 0.0;  // unbalanced, at its end
 };
 
 /// What sweeps of the rigid solver left when there were too many of them.
@@ -156,6 +165,7 @@ struct State {
     Ledger ledger;
     double earlier_gain = 0.0;  // energy_gain before the last reset
     Statics statics;
+    std::vector<Unsettled> unsettled;
     Unsolved unsolved;
     Course course;
 

@@ -18,14 +18,14 @@ namespace {
 [[maybe_unused]] void every_member_is_transferred(const State& state, const Contact& contact) {
     [[maybe_unused]] const auto& [time, stage_time, calm, step, total_steps, stage, stage_step, halvings, substeps, motion, load,
                                   damping, contacts, calm_looks, fast, removed, release, start_position, start_angle, ledger,
-                                  earlier_gain, statics, unsolved, course] = state;
+                                  earlier_gain, statics, unsettled, unsolved, course] = state;
     [[maybe_unused]] const auto& [window_length, window_begin, next_look, looks, give, kinetic, kinetic_last, kinetic_before,
                                   sum, turn_sum, mean_time, mean, turn_mean, mean_velocity, velocity_begin, fell,
                                   speed, speed_before, going, reach, rested, no_further, set_out, mechanism, verdict,
                                   certain_at] = course;
     [[maybe_unused]] const auto& [unsolved_steps, unsolved_speed, unsolved_way] = unsolved;
-    [[maybe_unused]] const auto& [held_back, load_share, load_rate, window_position, window_angle, window_load, window,
-                                  relaxation_damping, shift, polish_at, patience, start, look_at, look_share, look_ratio,
+    [[maybe_unused]] const auto& [held_back, load_share, load_rate, load_lag, pressed, window_position, window_angle, window_load, window,
+                                  relaxation_damping, shift, polish_at, patience, push, start, look_at, look_share, look_ratio,
                                   look_distance, suspicious, now, earlier, newton_ratios] = state.statics;
     [[maybe_unused]] const auto& [position, angle, velocity, spin] = motion;
     [[maybe_unused]] const auto& [list, reaction, broken] = contacts;
@@ -193,6 +193,8 @@ void transfer_statics(Archive& to, AnyStatics& s) {
     to.list("statics/held_back", "N, N m", s.held_back);
     to.one("statics/load_share", "1", s.load_share);
     to.one("statics/load_rate", "1", s.load_rate);
+    to.one("statics/load_lag", "1", s.load_lag);
+    to.one("statics/pressed", "N", s.pressed);
     to.list("statics/position", "m", s.position);
     to.list("statics/angle", "rad", s.angle);
     to.list("statics/load", "N, N m", s.load);
@@ -201,6 +203,7 @@ void transfer_statics(Archive& to, AnyStatics& s) {
     to.one("statics/shift", "1", s.shift);
     to.one("statics/polish_at", "1", s.polish_at);
     to.one("statics/patience", "1", s.patience);
+    to.one("statics/push", "1", s.push);
     to.list("statics/start", "m", s.start);
     to.one("statics/look_at", "1", s.look_at);
     to.one("statics/look_share", "1", s.look_share);
@@ -289,6 +292,8 @@ void transfer(Archive& to, AnyState& state) {
     to.one("ledger/gained", "J", state.ledger.gained);
     to.one("ledger/largest", "J", state.ledger.largest);
     to.one("earlier_gain", "1", state.earlier_gain);
+    to.column("unsettled/stage", "1", state.unsettled, &Unsettled::stage);
+    to.column("unsettled/ratio", "1", state.unsettled, &Unsettled::ratio);
     to.one("unsolved/steps", "1", state.unsolved.steps);
     to.one("unsolved/speed", "m/s", state.unsolved.speed);
     to.one("unsolved/way", "m", state.unsolved.way);

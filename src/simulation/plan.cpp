@@ -187,7 +187,26 @@ private:
     double closure_allowed() const {
         if (!need_.open_is_error || (!uses("explicit") && !uses("static"))) return 0.1 * accuracy_;
         if (uses("explicit") && !need_.at_rest) return std::pow(0.5 * accuracy_ / spring_error, 2);
-        return 0.5 * accuracy_ / (static_error * std::max(1.0, 0.5 * burden_.layers));
+        return uses("explicit") ? closure_by_settlement() : closure_of_statics();
+    }
+
+    double closure_by_settlement() const { return 0.5 * accuracy_ / (static_error * std::max(1.0, 0.5 * burden_.layers)); }
+
+    /// Arches and columns near their limit fall where the settlement alone looks small, as mechanisms do. The static solver
+    /// is as quick with stiff joints as with soft ones, as long as rounding of coordinates leaves forces in balance.
+    double closure_of_statics() const {
+        const double as_mechanism = std::pow(0.5 * accuracy_ / spring_error, 2);
+        return std::min(closure_by_settlement(), std::max(as_mechanism, rounding()));
+    }
+
+    /// Closure of a joint of which the rounding of coordinates is as large a share as forces may be out of balance.
+    double rounding() const {
+        double farthest = 0.0, ratio = 1.0;
+        for (BlockId b = 0; b < model_.blocks.size(); ++b)
+            farthest = std::max(farthest, model_.blocks.start[b].norm() + model_.blocks.radius[b]);
+        for (const StageView& stage : stages_)
+            if (stage.until->equilibrium) ratio = std::min(ratio, *stage.until->equilibrium);
+        return std::numeric_limits<double>::epsilon() * farthest / (burden_.mean_size * ratio);
     }
 
     void choose_stiffness() {

@@ -224,7 +224,6 @@ void check_probes(const Simulation& simulation) {
 }
 
 Outcome run(Simulation& simulation, const RunOptions& options) {
-    bool settled = true;
     const auto watch = [&] {
         if (options.watch && simulation.recorded())
             options.watch->record(simulation.model(), simulation.state(),
@@ -246,13 +245,9 @@ Outcome run(Simulation& simulation, const RunOptions& options) {
         }
         if (simulation.timeless()) watch();
         if (options.recorder) options.recorder->end_stage(simulation);
-        if (simulation.stage().until.equilibrium && !simulation.reached_equilibrium() && !simulation.ended_by_verdict()) {
-            settled = false;
-            if (options.out_of_time) options.out_of_time(simulation);
-        }
         if (!simulation.end_stage()) break;
     }
-    return settled ? Outcome::complete : Outcome::no_equilibrium;
+    return simulation.state().unsettled.empty() ? Outcome::complete : Outcome::no_equilibrium;
 }
 
 }  // namespace talus

@@ -73,13 +73,12 @@ struct RunOptions {
     Watch* watch = nullptr;                              // none: expectations are not judged
     std::function<void(const Simulation&)> stage_begun;  // after its step is chosen
     std::function<void(const Simulation&)> progress;     // called every step; cheap
-    /// A stage that was to end in equilibrium has run out of time; called at its very end, and the run goes on.
-    std::function<void(const Simulation&)> out_of_time;
     std::function<bool()> interrupted;  // asked every step
     Entry entry = Entry::fresh;
 };
 
-/// Runs to the end of the last stage. `no_equilibrium`: a stage that was to end in equilibrium ran out of time.
+/// Runs to the end of the last stage. `no_equilibrium`: a stage that was to end in equilibrium ran out of time
+/// (State::unsettled), be it before the run was resumed.
 /// Throws DivergenceError, after a last look at everything worth keeping: the good frames stay. Throws InputError if a stage
 /// cannot begin; the restart file is then that of the end of the one before.
 Outcome run(Simulation& simulation, const RunOptions& options);

@@ -333,7 +333,16 @@ void Simulation::begin_stage() {
     release_unused_memory();
 }
 
+// In the state, so that a run that is resumed later does not forget it. A finished run that is resumed ends its last stage
+// again.
+void Simulation::note_if_unsettled() {
+    if (!stage().until.equilibrium || reached_equilibrium() || ended_by_verdict()) return;
+    if (state_.unsettled.empty() || state_.unsettled.back().stage != state_.stage)
+        state_.unsettled.push_back({state_.stage, unbalanced_ratio(model_, state_)});
+}
+
 bool Simulation::end_stage() {
+    note_if_unsettled();
     if (state_.stage + 1 == stage_count()) return false;  // a reset prepares what follows; here nothing does
     if (stage().reset) {
         state_.earlier_gain = energy_gain();

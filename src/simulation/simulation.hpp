@@ -50,7 +50,7 @@ public:
     /// every stage, not after a restart in its middle. Throws InputError if a time step of the user is above the stable
     /// estimate or a block is not there, at the first stage also for what can be known of later ones.
     void begin_stage();
-    /// Resets what the stage asks for and moves on; false if it was the last one.
+    /// Notes whether it found the equilibrium it was to end in, resets what it asks for and moves on; false if it was the last.
     bool end_stage();
 
     void step();              // one time step; the last one of a timed stage is cut to end exactly
@@ -63,6 +63,7 @@ public:
     const Placed& placed() const { return placed_; }
     State first_state() const { return state_at_start(model_); }
     const StageSpec& stage() const { return stages_[state_.stage]; }
+    const StageSpec& stage(int k) const { return stages_[k]; }
     int stage_count() const { return static_cast<int>(stages_.size()); }
     const StableStep& stable() const { return stable_; }
     const BuildReport& report() const { return report_; }
@@ -152,6 +153,7 @@ private:
     bool loads_are_on() const;
     void look_at_blocks();
 
+    void note_if_unsettled();
     void apply_stage();  // what a stage changes in the model; idempotent
     void delete_blocks();
     void check_stages() const;

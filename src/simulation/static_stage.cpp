@@ -41,7 +41,7 @@ void Simulation::begin_static() {
     std::ranges::fill(state_.motion.velocity, Vec2::Zero());
     std::ranges::fill(state_.motion.spin, 0.0);
     statics_ = std::make_unique<StaticSolver>(model_, state_);
-    statics_->begin(model_, state_);
+    statics_->begin(model_, *stage().until.equilibrium, state_);
 }
 
 void Simulation::forces_static() {

@@ -2,6 +2,7 @@
 
 #include "core/errors.hpp"
 #include "core/text.hpp"
+#include "output/static_table.hpp"
 #include "simulation/deep_overlap.hpp"
 #include "simulation/run.hpp"
 
@@ -22,9 +23,7 @@ std::vector<Verdict> judge_unbuilt(const std::vector<ExpectSpec>& expects, const
     return verdicts;
 }
 
-std::string out_of_iterations(const Simulation& simulation) {
-    const StageSpec& stage = simulation.stage();
-    const StaticEvidence& now = simulation.state().statics.now;
+std::string out_of_iterations(const Simulation& simulation, const StageSpec& stage, const StaticEvidence& now) {
     const std::string ratio = "unbalanced ratio " + number(now.ratio) + ", asked for " + number(*stage.until.equilibrium);
     if (now.moving < 0)
         return "stage " + stage.name + " did not come to equilibrium in " + std::to_string(now.iterations) +
@@ -64,13 +63,14 @@ Trial try_out(const Scenario& scenario, const std::map<std::string, Trial>& earl
         RunOptions options;
         options.watch = &*watch;
         // Where one looks for it, to find no equilibrium is an answer like any other.
-        const bool asked =
-            std::ranges::any_of(expects, [](const ExpectSpec& e) { return e.probe.quantity == "equilibrium"; });
+        const bool asked = std::ranges::any_of(
+            expects, [](const ExpectSpec& e) { return e.probe.quantity == "equilibrium" || about_the_verdict(e); });
         options.stage_begun = [&](const Simulation& s) {
             if (const std::string warning = long_stage(s); !warning.empty()) told.warnings.push_back(warning);
         };
-        if (!asked) options.out_of_time = [&](const Simulation& s) { told.fault = out_of_time(s); };
         run(*simulation, options);
+        const std::vector<Unsettled>& unsettled = simulation->state().unsettled;
+        if (!asked && !unsettled.empty()) told.fault = out_of_time(*simulation, unsettled.back());
         told.verdict = simulation->verdict();
     } catch (const DivergenceError& error) {
         told.fault = std::string("diverged: ") + error.what();
@@ -122,12 +122,12 @@ std::string long_stage(const Simulation& simulation) {
                                                  : "softer joints, or solver: rigid where it will do, take fewer");
 }
 
-std::string out_of_time(const Simulation& simulation) {
-    const StageSpec& stage = simulation.stage();
-    if (simulation.timeless()) return out_of_iterations(simulation);
+std::string out_of_time(const Simulation& simulation, const Unsettled& found) {
+    const StageSpec& stage = simulation.stage(found.stage);
+    for (const StaticEvidence& evidence : static_stages(simulation.state().statics))
+        if (evidence.stage == found.stage) return out_of_iterations(simulation, stage, evidence);
     return "stage " + stage.name + " did not come to equilibrium in its " + number(*stage.until.time) +
-           " s: unbalanced ratio " + number(unbalanced_ratio(simulation.model(), simulation.state())) + ", not below " +
-           number(*stage.until.equilibrium);
+           " s: unbalanced ratio " + number(found.ratio) + ", not below " + number(*stage.until.equilibrium);
 }
 
 }  // namespace talus

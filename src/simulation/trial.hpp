@@ -31,6 +31,6 @@ std::vector<std::string> run_warnings(const Simulation& simulation);
 std::string long_stage(const Simulation& simulation);
 
 /// What to say at the end of a stage that was to end in equilibrium and did not.
-std::string out_of_time(const Simulation& simulation);
+std::string out_of_time(const Simulation& simulation, const Unsettled& stage);
 
 }  // namespace talus

@@ -1,6 +1,7 @@
 #include "statics/newton.hpp"
 
 #include "contact/tangent.hpp"
+#include "core/turn.hpp"
 
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseLU>
@@ -14,7 +15,12 @@ namespace {
 using Sparse = Eigen::SparseMatrix<double>;
 using VectorX = Eigen::VectorXd;
 
-constexpr int shortest = 6;  // halvings of a step: one that has to be shorter than 1/64 goes nowhere
+// Of the scaled masses. What moves freely has pivots of 1e-16, of either sign; a block that gravity turns over has -rho g /
+// kn.
+constexpr double no_stiffness = 1e-12;
+constexpr double probe = 0.1;      // overlaps that a step off an equilibrium is long: contacts that are closed stay closed
+constexpr double confirmed = 0.1;  // share of the force predicted that must be met along it
+constexpr int shortest = 6;        // halvings of a step: one that has to be shorter than 1/64 goes nowhere
 
 // Number of each free axis of each block among all unknowns; -1 = held.
 std::vector<int> number_unknowns(const Model& model, const State& state, int& count) {
@@ -41,10 +47,14 @@ struct Newton::System {
     Eigen::SparseLU<Sparse> lu;
     std::vector<int> ldlt_outer, ldlt_inner, lu_outer, lu_inner;  // patterns they were analysed for
 
-    void assemble(const Model& model, const Placed& placed, const ScaledMass& mass, const State& state);
+    void assemble(const Model& model, const Placed& placed, const ScaledMass& mass, const State& state, double shift,
+                  Shear shear);
     bool solve(VectorX& x);
+    /// The lowest pivot below zero, and a direction with this stiffness; 0 if there is none.
+    double weakest(VectorX& x);
 
 private:
+    int lowest_pivot() const;  // of those of LDL^T that are negative, as a share of its diagonal; -1 = none
     bool known(std::vector<int>& outer, std::vector<int>& inner) const {
         const int *o = matrix.outerIndexPtr(), *i = matrix.innerIndexPtr();
         const auto columns = matrix.outerSize() + 1;
@@ -57,7 +67,8 @@ private:
     }
 };
 
-void Newton::System::assemble(const Model& model, const Placed& placed, const ScaledMass& mass, const State& state) {
+void Newton::System::assemble(const Model& model, const Placed& placed, const ScaledMass& mass, const State& state,
+                              double shift, Shear shear) {
     unknown = number_unknowns(model, state, size);
     const std::vector<Contact>& list = state.contacts.list;
     const int n = static_cast<int>(list.size());
@@ -65,15 +76,20 @@ void Newton::System::assemble(const Model& model, const Placed& placed, const Sc
 #pragma omp parallel for schedule(dynamic, 64)
     for (int i = 0; i < n; ++i)
         if (list[i].touching)
-            tangent[i] = contact_tangent(model, placed, state.contacts.broken, list[i], state.contacts.reaction[i]);
+            tangent[i] = contact_tangent(model, placed, state.contacts.broken, list[i], state.contacts.reaction[i], shear);
     std::vector<Eigen::Triplet<double>> entries;
     const auto add = [&](int row, int column, double value) {
         if (row >= 0 && column >= 0) entries.emplace_back(row, column, value);
     };
     for (BlockId b = 0; b < model.blocks.size(); ++b)
         for (int i = 0; i < 3; ++i)
-            for (int j = 0; j < 3; ++j)
-                add(unknown[3 * b + i], unknown[3 * b + j], state.statics.shift * mass.mass(b)(i, j));
+            for (int j = 0; j < 3; ++j) add(unknown[3 * b + i], unknown[3 * b + j], shift * mass.mass(b)(i, j));
+    for (const Load& l : model.loads) {  // a force at an arm: the torque falls by arm . force with the angle
+        const auto [c, s] = turn(state.motion.angle[l.block]);
+        const Vec2 arm(c * l.arm.x() - s * l.arm.y(), s * l.arm.x() + c * l.arm.y());
+        const int angle = unknown[3 * l.block + 2];
+        add(angle, angle, arm.dot(Vec2(l.force_x(state.stage_time), l.force_y(state.stage_time))));
+    }
     symmetric = true;
     for (int c = 0; c < n; ++c) {
         if (!list[c].touching) continue;
@@ -108,6 +124,23 @@ bool Newton::System::solve(VectorX& x) {
     return x.allFinite();
 }
 
+// L^T x = e_j has x . K x = D_j.
+double Newton::System::weakest(VectorX& x) {
+    if (!known(ldlt_outer, ldlt_inner)) ldlt.analyzePattern(matrix);
+    ldlt.factorize(matrix);
+    const int j = ldlt.info() == Eigen::Success ? lowest_pivot() : -1;
+    if (j < 0) return 0.0;
+    x = ldlt.permutationPinv() * ldlt.matrixU().solve(VectorX::Unit(size, j)).eval();
+    return x.allFinite() ? ldlt.vectorD()[j] : 0.0;
+}
+
+int Newton::System::lowest_pivot() const {
+    if (size == 0) return -1;
+    const VectorX scale = ldlt.permutationP() * matrix.diagonal().eval();
+    Eigen::Index j = 0;
+    return (ldlt.vectorD().array() / scale.array().abs()).minCoeff(&j) < -no_stiffness ? static_cast<int>(j) : -1;
+}
+
 Newton::Newton() : system_(std::make_unique<System>()) {}
 Newton::~Newton() = default;
 
@@ -131,31 +164,86 @@ struct Before {
     }
 };
 
+void set_rates(const std::vector<int>& unknown, const VectorX& x, Motion& motion) {
+    for (std::size_t b = 0; b < motion.velocity.size(); ++b) {
+        const auto at = [&](int i) { return unknown[3 * b + i] < 0 ? 0.0 : x[unknown[3 * b + i]]; };
+        motion.velocity[b] = {at(0), at(1)};
+        motion.spin[b] = at(2);
+    }
+}
+
+// m, overlap of the contacts of the block that these rates move furthest.
+double overlap_on_the_way(const Model& model, const State& state, const Motion& way) {
+    BlockId most = 0;
+    double furthest = 0.0, overlap = 0.0;
+    for (BlockId b = 0; b < model.blocks.size(); ++b) {
+        const double size = way.velocity[b].norm() + std::abs(way.spin[b]) * model.blocks.radius[b];
+        if (size > furthest) furthest = size, most = b;
+    }
+    for (const Contact& c : state.contacts.list.read())
+        if (model.parts.block[c.part_a] == most || model.parts.block[c.part_b] == most)
+            overlap = std::max(overlap, c.overlap);
+    return overlap > 0.0 ? overlap : 1e-6 * model.blocks.radius[most];
+}
+
+// J, what a change of the load does along these rates.
+double work(const Motion& way, const std::vector<Force>& after, const std::vector<Force>& before) {
+    double sum = 0.0;
+    for (std::size_t b = 0; b < after.size(); ++b)
+        sum += way.velocity[b].dot(after[b].force - before[b].force) + way.spin[b] * (after[b].torque - before[b].torque);
+    return sum;
+}
+
 }  // namespace
+
+void move(double share, const Motion& way, Motion& motion) {
+    for (std::size_t b = 0; b < way.velocity.size(); ++b) {
+        motion.velocity[b] = share * way.velocity[b];
+        motion.spin[b] = share * way.spin[b];
+        motion.position[b] += motion.velocity[b];
+        motion.angle[b] += motion.spin[b];
+    }
+}
+
+bool Newton::unstable(const Model& model, const ScaledMass& mass, const Placed& placed, const Forces& forces, State& state,
+                      Motion& way) {
+    System& s = *system_;
+    s.assemble(model, placed, mass, state, no_stiffness, Shear::sticks);
+    VectorX x;
+    const double stiffness = s.weakest(x);
+    if (stiffness >= 0.0) return false;
+    way = state.motion;
+    set_rates(s.unknown, x, way);
+    double length = probe * overlap_on_the_way(model, state, way) / largest_rate(model, way), back = 0.0;
+    for (BlockId b = 0; b < model.blocks.size(); ++b)
+        back += way.velocity[b].dot(state.statics.start[b] - state.motion.position[b]);
+    if (back < 0.0) length = -length;
+    set_rates(s.unknown, length * x, way);
+    const Before before(state);
+    for (const double side : {1.0, -1.0}) {
+        move(side, way, state.motion);
+        forces.evaluate();
+        const double gained = side * work(way, state.load, before.load);
+        before.put_back(state, forces);
+        if (gained > -confirmed * stiffness * length * length) return true;
+    }
+    return false;
+}
 
 bool Newton::improve(const Model& model, const ScaledMass& mass, const Placed& placed, double longest, const Forces& forces,
                      State& state) {
     System& s = *system_;
-    s.assemble(model, placed, mass, state);
+    s.assemble(model, placed, mass, state, state.statics.shift, Shear::by_the_law);
     VectorX x;
     Before before(state);
     const double unbalanced = unbalanced_energy(mass, state.load);
     double& shift = state.statics.shift;
     if (s.solve(x)) {
-        for (BlockId b = 0; b < model.blocks.size(); ++b) {
-            const auto at = [&](int i) { return s.unknown[3 * b + i] < 0 ? 0.0 : x[s.unknown[3 * b + i]]; };
-            before.motion.velocity[b] = {at(0), at(1)};
-            before.motion.spin[b] = at(2);
-        }
+        set_rates(s.unknown, x, before.motion);
         const double largest = largest_rate(model, before.motion);
         double share = largest > longest ? longest / largest : 1.0;
         for (int i = 0; i <= shortest; ++i, share *= 0.5) {
-            for (BlockId b = 0; b < model.blocks.size(); ++b) {
-                state.motion.velocity[b] = share * before.motion.velocity[b];
-                state.motion.spin[b] = share * before.motion.spin[b];
-                state.motion.position[b] += state.motion.velocity[b];
-                state.motion.angle[b] += state.motion.spin[b];
-            }
+            move(share, before.motion, state.motion);
             forces.evaluate();
             if (unbalanced_energy(mass, state.load) <= (1.0 - 0.2 * share) * unbalanced) {
                 shift = shift > 1e-13 ? 0.1 * shift : 0.0;

@@ -16,6 +16,7 @@ constexpr double first_share = 0.01;      // of the load in the first iteration
 constexpr double rounding = 1e-13;        // unbalanced ratio below which there is nothing to gain
 constexpr double spare = 1e-3;            // of the tolerance: below, Newton's method stops; it costs a step or two
 constexpr std::int64_t patience = 50;     // iterations of relaxation after Newton has failed first; doubled each time
+constexpr double push_growth = 10.0;      // of a push off an equilibrium that is unstable, where the one before led back
 constexpr std::int64_t first_look = 200;  // iterations to the first look whether something keeps moving; doubled then
 constexpr double far = 0.01;              // of its size: if it has so far to go, it is not held
 constexpr int looks_needed = 3;           // without progress: 1600 iterations at least
@@ -40,6 +41,14 @@ void add(double share, const std::vector<Force>& what, std::vector<Force>& to) {
     }
 }
 
+// Out of balance, as a share of what the load has done so far.
+double lag(const Model& model, const Unbalance& now, const Statics& statics) {
+    double coming = 0.0;
+    for (BlockId b = 0; b < model.blocks.size(); ++b)
+        coming = std::max(coming, out_of_balance(model.blocks, b, statics.held_back[b]));
+    return now.largest / std::max(std::abs(now.pressed - statics.pressed), coming);
+}
+
 // Largest displacement in one iteration in sizes of the block.
 double largest_share(const Model& model, const Motion& motion) {
     double largest = 0.0;
@@ -60,15 +69,19 @@ StaticSolver::StaticSolver(const Model& model, State& state)
     if (!state.statics.angle.empty()) mass_.turn_to(state.statics.angle);
 }
 
-void StaticSolver::begin(const Model& model, State& state) {
+void StaticSolver::begin(const Model& model, double tolerance, State& state) {
     Statics& s = state.statics;
     if (s.now.iterations > 0) s.earlier.push_back(s.now);
     s.now = {.stage = state.stage};
-    s.now.ratio = unbalanced_ratio(model, state);
+    const Unbalance before = unbalance(model, state);
+    s.now.ratio = before.ratio();
     s.held_back = state.load;
-    s.load_share = s.now.ratio > path_ratio ? 0.0 : 1.0;
+    s.load_share = s.now.ratio > tolerance ? 0.0 : 1.0;
     s.load_rate = first_share;
+    s.load_lag = 0.0;
+    s.pressed = before.pressed;
     s.shift = 1e-6;
+    s.push = 1.0;
     s.polish_at = least_iterations;
     s.patience = patience;
     s.start = state.motion.position;
@@ -94,7 +107,7 @@ void StaticSolver::iterate(const Model& model, const Placed& placed, double tole
 void StaticSolver::bring_on_load(State& state) const {
     Statics& s = state.statics;
     const double more =
-        s.now.ratio > 2.0 * path_ratio && s.now.increments > 0 ? 0.0 : std::min(s.load_rate, 1.0 - s.load_share);
+        s.load_lag > 2.0 * path_ratio && s.now.increments > 0 ? 0.0 : std::min(s.load_rate, 1.0 - s.load_share);
     if (more == 0.0) return;
     add(more, s.held_back, state.load);
     add(more, s.held_back, s.load);  // the damping is measured by what the blocks answer, not by the load
@@ -108,9 +121,9 @@ bool StaticSolver::polish(const Model& model, const Placed& placed, double toler
     Statics& s = state.statics;
     const double before = s.now.ratio;
     if (!newton_.improve(model, mass_, placed, longest_, forces, state)) {
-        if (s.now.ratio < tolerance && s.now.drift < largest_drift) s.now.reached = 1;
         s.polish_at = s.now.iterations + s.patience;
         s.patience *= 2;
+        if (s.now.ratio < tolerance && s.now.drift < largest_drift) settle(model, placed, forces, state);
         start_relaxation(mass_, state);
         return s.now.reached != 0;
     }
@@ -119,17 +132,35 @@ bool StaticSolver::polish(const Model& model, const Placed& placed, double toler
     s.now.drift = largest_share(model, state.motion);
     s.newton_ratios.push_back(s.now.ratio);
     const bool more_to_gain = s.now.ratio > std::max(rounding, spare * tolerance) && s.now.ratio < 0.25 * before;
-    if (s.now.ratio < tolerance && s.now.drift < largest_drift && !more_to_gain) s.now.reached = 1;
+    if (s.now.ratio < tolerance && s.now.drift < largest_drift && !more_to_gain) settle(model, placed, forces, state);
     start_relaxation(mass_, state);
     return true;
 }
 
+// The end, unless nothing stays here: then what moves next is pushed, and relaxation shows where it goes.
+void StaticSolver::settle(const Model& model, const Placed& placed, const Forces& forces, State& state) {
+    Statics& s = state.statics;
+    Motion way;
+    if (!newton_.unstable(model, mass_, placed, forces, state, way)) {
+        s.now.reached = 1;
+        return;
+    }
+    move(std::min(s.push, longest_ / largest_rate(model, way)), way, state.motion);
+    forces.evaluate();
+    s.now.ratio = unbalanced_ratio(model, state);
+    s.push *= push_growth;
+    s.polish_at = s.now.iterations + s.patience;
+    s.patience *= 2;
+}
+
 void StaticSolver::look(const Model& model, double tolerance, State& state) const {
     Statics& s = state.statics;
-    s.now.ratio = unbalanced_ratio(model, state);
+    const Unbalance now = unbalance(model, state);
+    s.now.ratio = now.ratio();
     if (s.load_share < 1.0) {
         s.now.loading_ratio = std::max(s.now.loading_ratio, s.now.ratio);
-        s.load_rate = s.now.ratio > path_ratio ? std::max(0.5 * s.load_rate, least_share) : 1.25 * s.load_rate;
+        s.load_lag = lag(model, now, s);
+        s.load_rate = s.load_lag > path_ratio ? std::max(0.5 * s.load_rate, least_share) : 1.25 * s.load_rate;
     }
     const double time = s.damping > 0.0 ? 2.0 / s.damping : static_cast<double>(s.now.iterations);
     s.now.drift = time * largest_share(model, state.motion);

@@ -121,8 +121,12 @@ std::string reason(const Model& model, const State& state, bool loads_are_on, co
     return text.str();
 }
 
-/// Blocks of a static stage that have come to rest further away than they can rock, or went along with one that keeps
-/// moving.
+// rad: what comes to rest after so large a turn lies on another face. Half of it is met by blocks that lean, twice of it
+// misses a square that falls off its tip.
+constexpr double fallen_over = 0.4;
+
+/// Blocks of a static stage that have come to rest further away than they can rock, or on another face, or went along with
+/// one that keeps moving.
 void find_moved(const Model& model, const State& state, StabilityVerdict& v) {
     const StaticEvidence& now = state.statics.now;
     const double farthest = now.moving < 0 ? 0.0 : way_gone(model, state, now.moving);
@@ -131,7 +135,9 @@ void find_moved(const Model& model, const State& state, StabilityVerdict& v) {
     for (BlockId b = 0; b < model.blocks.size(); ++b) {
         if (!free_to_move(model, state, b)) continue;
         const bool went_along = now.moving >= 0 && way_gone(model, state, b) > takes_along * farthest;
-        if (went_along || is_far(model, state, b)) v.block_mechanism[b] = mechanism_seen_now(model, state, footing, b);
+        const bool fell_over = std::abs(state.motion.angle[b] - state.start_angle[b]) >= fallen_over;
+        if (went_along || fell_over || is_far(model, state, b))
+            v.block_mechanism[b] = mechanism_seen_now(model, state, footing, b);
     }
 }
 

@@ -34,8 +34,9 @@ public:
         for (const auto* list : {&t.position, &t.start}) each(*list);
         for (const auto* list : {&t.angle, &t.newton_ratios}) each(*list);
         add(t.load_share, t.load_rate, t.window, t.damping, t.shift, t.polish_at, t.patience, t.look_at, t.look_share,
-            t.look_ratio, t.look_distance, t.suspicious, t.now);
+            t.look_ratio, t.look_distance, t.suspicious, t.now, t.load_lag, t.pressed, t.push);
         each(t.earlier);
+        each(s.unsettled);
         const Course& c = s.course;
         add(c.window, c.window_begin, c.next_look, c.looks, c.give, c.kinetic, c.kinetic_last, c.kinetic_before, c.mean_time,
             c.verdict, c.certain_at);
@@ -69,6 +70,7 @@ private:
         add(e.stage, e.reached, e.moving, e.ratio, e.drift, e.loading_ratio, e.iterations, e.evaluations, e.increments,
             e.newton_steps);
     }
+    void one(const Unsettled& u) { add(u.stage, u.ratio); }
     void one(const Contact& c) {
         add(c.part_a, c.part_b, c.joint, c.face, c.edge_a, c.edge_b, c.touching, c.slipped, c.sliding, c.struck, c.alive,
             c.length);

@@ -4,6 +4,7 @@
 #include "core/random.hpp"
 #include "model/hash.hpp"
 #include "output/restart.hpp"
+#include "simulation/trial.hpp"
 #include "support/catch.hpp"
 #include "support/folder.hpp"
 #include "support/whole_run.hpp"
@@ -284,4 +285,32 @@ TEST_CASE("one hash for a static run with any number of threads, any skin, stopp
     });
     CHECK(restarts > 3);
     CHECK(resumed.hashes == expected.hashes);
+}
+
+TEST_CASE("a run that is resumed has not forgotten that a stage before found no equilibrium") {
+    WholeRun run(scenario_of(R"(
+gravity: [0, -9.81]
+materials: {rock: {density: 2500}}
+joints: {plane: {normal_stiffness: 1e9, shear_stiffness: 5e8, friction_angle_deg: 20}}
+blocks:
+  - {name: plane, outline: [[0, 0], [40, 0], [40, 40]], held: true}
+  - {name: block, outline: [[35, 35], [36, 36], [35.5, 36.5], [34.5, 35.5]]}
+stages: [{name: stand, solver: static, reset: true, until: {equilibrium: 1e-6}}]
+run: {solver: explicit, until: {time: 0.01}}
+)"));
+    const Folder folder;
+    const std::string path = folder / "slides.restart.h5";
+    bool resumed = false;
+    run.to_the_end([&](WholeRun& r) {  // 45 degrees are steeper than 20
+        if (resumed || r.state().stage == 0) return;
+        write_restart(path, RestartInfo{}, r.state());
+        r.go_on_from(read_restart(path, r.model()));
+        resumed = true;
+    });
+    REQUIRE(resumed);
+    REQUIRE(run.state().unsettled.size() == 1);
+    CHECK(run.state().unsettled[0].stage == 0);
+    CHECK(run.state().unsettled[0].ratio > 1e-6);
+    CHECK(out_of_time(run.simulation(), run.state().unsettled[0]).find("stage stand has no equilibrium: block 1 'block'") ==
+          0);
 }

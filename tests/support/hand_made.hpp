@@ -131,6 +131,7 @@ inline State random_state(const Model& m, std::uint64_t seed, int contacts) {
     t.held_back = s.release, t.load = s.damping, t.position = s.start_position, t.start = s.motion.position;
     t.angle = s.motion.angle, t.newton_ratios = s.motion.spin;
     t.load_share = number(), t.load_rate = number(), t.damping = number(), t.shift = number();
+    t.load_lag = number(), t.pressed = number(), t.push = number();
     t.look_share = number(), t.look_ratio = number(), t.look_distance = number();
     t.window = below(9), t.suspicious = below(9), t.polish_at = below(99), t.patience = below(99), t.look_at = below(99);
     const auto evidence = [&] {
@@ -138,6 +139,7 @@ inline State random_state(const Model& m, std::uint64_t seed, int contacts) {
                               number(), below(99), below(99), below(99), below(99)};
     };
     t.earlier = {evidence(), evidence()}, t.now = evidence();
+    s.unsettled = {{below(9), number()}, {below(9), number()}};
     Course& c = s.course;
     c.window = number(), c.window_begin = number(), c.next_look = number(), c.give = number(), c.mean_time = number();
     c.kinetic = number(), c.kinetic_last = number(), c.kinetic_before = number(),

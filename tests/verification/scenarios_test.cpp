@@ -24,7 +24,8 @@ std::vector<Verdict> verdicts_of(const Scenario& scenario) {
     RunOptions options;
     options.watch = &watch;
     const Outcome outcome = run(simulation, options);
-    if (std::ranges::none_of(scenario.expect, [](const ExpectSpec& e) { return e.probe.quantity == "equilibrium"; }))
+    if (std::ranges::none_of(scenario.expect,
+                             [](const ExpectSpec& e) { return e.probe.quantity == "equilibrium" || about_the_verdict(e); }))
         CHECK(outcome != Outcome::no_equilibrium);
     Told told;
     told.verdict = simulation.verdict();
