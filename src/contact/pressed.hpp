@@ -24,8 +24,8 @@ struct Pressed {
     bool loaded() const { return length > 0.0; }
 };
 
-/// How the normal part answers to a small displacement of b against a: each spring adds -kn length (measure . displacement at
-/// `at`) `force` to the force on b there. Positions from the centroid of block a.
+/// How the normal part answers to a small displacement of b against a: each spring adds -kn length (measure . displacement
+/// at `at`) `force` to the force on b there. Positions from the centroid of block a.
 struct PressedSpring {
     double length;        // m
     Vec2 at;              // m

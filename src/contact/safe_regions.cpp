@@ -85,7 +85,8 @@ public:
     Costs costs() const override {
         std::size_t watched = 0;
         for (const WatchedPairs& pairs : watched_) watched += pairs.size();
-        return {cost_at_rest + (1000.0 * static_cast<double>(escaped_.size()) + 2.2 * static_cast<double>(watched)) / std::max(n_, 1),
+        return {cost_at_rest +
+                    (1000.0 * static_cast<double>(escaped_.size()) + 2.2 * static_cast<double>(watched)) / std::max(n_, 1),
                 cost_of_lists};
     }
     std::vector<float> speeds() const override { return regions_.speeds(); }

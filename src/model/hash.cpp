@@ -51,7 +51,8 @@ std::uint64_t state_hash(const Model& model, const State& state) {
     hash << static_cast<std::uint64_t>(state.unsolved.steps) << state.unsolved.way;
     hash << static_cast<int>(state.course.verdict) << state.course.next_look << state.course.kinetic_last;
     for (std::size_t b = 0; b < state.course.speed.size(); ++b)
-        hash << state.course.speed[b] << static_cast<int>(state.course.set_out[b]) << static_cast<int>(state.course.mechanism[b]);
+        hash << state.course.speed[b] << static_cast<int>(state.course.set_out[b])
+             << static_cast<int>(state.course.mechanism[b]);
     for (const std::uint8_t fast : state.fast) hash << static_cast<int>(fast);
     for (const std::uint8_t looks : state.calm) hash << static_cast<int>(looks);
     for (const std::uint8_t cell : state.contacts.broken) hash << static_cast<int>(cell);

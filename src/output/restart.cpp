@@ -16,17 +16,18 @@ namespace {
 
 /// Breaks the build when a member is added that `transfer` does not know.
 [[maybe_unused]] void every_member_is_transferred(const State& state, const Contact& contact) {
-    [[maybe_unused]] const auto& [time, stage_time, calm, step, total_steps, stage, stage_step, halvings, substeps, motion, load,
-                                  damping, contacts, calm_looks, fast, removed, release, start_position, start_angle, ledger,
-                                  earlier_gain, statics, unsettled, unsolved, course] = state;
+    [[maybe_unused]] const auto& [time, stage_time, calm, step, total_steps, stage, stage_step, halvings, substeps, motion,
+                                  load, damping, contacts, calm_looks, fast, removed, release, start_position, start_angle,
+                                  ledger, earlier_gain, statics, unsettled, unsolved, course] = state;
     [[maybe_unused]] const auto& [window_length, window_begin, next_look, looks, give, kinetic, kinetic_last, kinetic_before,
-                                  sum, turn_sum, mean_time, mean, turn_mean, mean_velocity, velocity_begin, fell,
-                                  speed, speed_before, going, reach, rested, no_further, set_out, mechanism, verdict,
-                                  certain_at] = course;
+                                  sum, turn_sum, mean_time, mean, turn_mean, mean_velocity, velocity_begin, fell, speed,
+                                  speed_before, going, reach, rested, no_further, set_out, mechanism, verdict, certain_at] =
+        course;
     [[maybe_unused]] const auto& [unsolved_steps, unsolved_speed, unsolved_way] = unsolved;
-    [[maybe_unused]] const auto& [held_back, load_share, load_rate, load_lag, pressed, window_position, window_angle, window_load, window,
-                                  relaxation_damping, shift, polish_at, patience, push, start, look_at, look_share, look_ratio,
-                                  look_distance, suspicious, now, earlier, newton_ratios] = state.statics;
+    [[maybe_unused]] const auto& [held_back, load_share, load_rate, load_lag, pressed, window_position, window_angle,
+                                  window_load, window, relaxation_damping, shift, polish_at, patience, push, start, look_at,
+                                  look_share, look_ratio, look_distance, suspicious, now, earlier, newton_ratios] =
+        state.statics;
     [[maybe_unused]] const auto& [position, angle, velocity, spin] = motion;
     [[maybe_unused]] const auto& [list, reaction, broken] = contacts;
     [[maybe_unused]] const auto& [total0, kinetic0, gravity, loads, work, local_damping, driven, friction, contact_damping,
@@ -370,8 +371,8 @@ bool within(int value, int first, std::size_t end) { return value >= first && va
 
 bool fits(const Course& c, std::size_t blocks) {
     const auto all = [&](const auto&... lists) { return ((lists.size() == blocks) && ...); };
-    return c.window == 0.0 || all(c.sum, c.turn_sum, c.mean, c.turn_mean, c.velocity, c.velocity_begin, c.fell, c.speed, c.speed_before,
-                                  c.going, c.reach, c.rested, c.no_further, c.set_out, c.mechanism);
+    return c.window == 0.0 || all(c.sum, c.turn_sum, c.mean, c.turn_mean, c.velocity, c.velocity_begin, c.fell, c.speed,
+                                  c.speed_before, c.going, c.reach, c.rested, c.no_further, c.set_out, c.mechanism);
 }
 
 bool fits(const State& s, const Model& model) {
@@ -385,7 +386,8 @@ bool fits(const State& s, const Model& model) {
     return one_per_block(s.motion.position, s.motion.angle, s.motion.velocity, s.motion.spin, s.load, s.removed,
                          s.start_position, s.start_angle) &&
            (s.release.empty() || s.release.size() == blocks) && (s.damping.empty() || s.damping.size() == blocks) &&
-           (s.calm.empty() || s.calm.size() == blocks) && (s.fast.empty() || s.fast.size() == blocks) && fits(s.course, blocks) && s.contacts.reaction.size() == contacts &&
+           (s.calm.empty() || s.calm.size() == blocks) && (s.fast.empty() || s.fast.size() == blocks) &&
+           fits(s.course, blocks) && s.contacts.reaction.size() == contacts &&
            s.contacts.broken.size() == static_cast<std::size_t>(model.cells()) &&
            std::all_of(s.contacts.list.begin(), s.contacts.list.end(), known);
 }

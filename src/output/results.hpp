@@ -41,9 +41,9 @@ struct RunSummary {
     double wall_time = 0.0;  // s
     double cpu_time = 0.0;   // s, of all threads, from the first step on and without recording
     std::int64_t steps = 0;
-    double end_time = 0.0;                    // s
-    double energy_gain = 0.0;                 // 1
-    Statics statics;                          // evidence of the static stages
+    double end_time = 0.0;                      // s
+    double energy_gain = 0.0;                   // 1
+    Statics statics;                            // evidence of the static stages
     std::optional<StabilityVerdict> verdict{};  // none: the run ended before anything could be said
 };
 

@@ -128,7 +128,8 @@ Shape run() {
           "accept a time step above the stable estimate, and joints so soft that blocks pass through each other"},
          {"damping", damping(), fallback("{}"), "of the run"},
          {"smallest_failure", number("1", {0.0, 1.0, false, true}), optional,
-          "of the verdict: share of the area of all free blocks that makes the scene unstable when it is on its way; less of it "
+          "of the verdict: share of the area of all free blocks that makes the scene unstable when it is on its way; less "
+          "of it "
           "is loose stones, which are counted. 0.001 if not given; 0: every chip counts"},
          {"freeze", either({choice({"never"}), number("1", {0.0, 0.1, true, false})}), derived("never, or by `accuracy`"),
           "a block at rest is not computed while less than this share of what its contacts hand on, or of its weight if "

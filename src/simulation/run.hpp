@@ -73,7 +73,7 @@ struct RunOptions {
     Watch* watch = nullptr;                              // none: expectations are not judged
     std::function<void(const Simulation&)> stage_begun;  // after its step is chosen
     std::function<void(const Simulation&)> progress;     // called every step; cheap
-    std::function<bool()> interrupted;  // asked every step
+    std::function<bool()> interrupted;                   // asked every step
     Entry entry = Entry::fresh;
 };
 

@@ -50,7 +50,8 @@ public:
     /// every stage, not after a restart in its middle. Throws InputError if a time step of the user is above the stable
     /// estimate or a block is not there, at the first stage also for what can be known of later ones.
     void begin_stage();
-    /// Notes whether it found the equilibrium it was to end in, resets what it asks for and moves on; false if it was the last.
+    /// Notes whether it found the equilibrium it was to end in, resets what it asks for and moves on; false if it was the
+    /// last.
     bool end_stage();
 
     void step();              // one time step; the last one of a timed stage is cut to end exactly

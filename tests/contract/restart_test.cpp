@@ -93,8 +93,14 @@ Model bonded_wall() {
 }
 
 RestartInfo info_now(const ResultsWriter& writer) {
-    return {"wall.yaml",       "title: A wall\n", test::run_info().scenario_hash,
-            {"run.threads=2"}, writer.frames(),   writer.history_rows(), 0, {}};
+    return {"wall.yaml",
+            "title: A wall\n",
+            test::run_info().scenario_hash,
+            {"run.threads=2"},
+            writer.frames(),
+            writer.history_rows(),
+            0,
+            {}};
 }
 
 }  // namespace

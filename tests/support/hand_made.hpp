@@ -142,11 +142,11 @@ inline State random_state(const Model& m, std::uint64_t seed, int contacts) {
     s.unsettled = {{below(9), number()}, {below(9), number()}};
     Course& c = s.course;
     c.window = number(), c.window_begin = number(), c.next_look = number(), c.give = number(), c.mean_time = number();
-    c.kinetic = number(), c.kinetic_last = number(), c.kinetic_before = number(),
-    c.certain_at = number();
+    c.kinetic = number(), c.kinetic_last = number(), c.kinetic_before = number(), c.certain_at = number();
     c.looks = below(99), c.verdict = static_cast<Stability>(below(3));
     for (BlockId b = 0; b < m.blocks.size(); ++b) {
-        c.sum.push_back(vector()), c.mean.push_back(vector()), c.velocity.push_back(vector()), c.velocity_begin.push_back(vector());
+        c.sum.push_back(vector()), c.mean.push_back(vector()), c.velocity.push_back(vector()),
+            c.velocity_begin.push_back(vector());
         c.turn_sum.push_back(number()), c.turn_mean.push_back(number());
         c.speed.push_back(number()), c.speed_before.push_back(number()), c.reach.push_back(number());
         for (auto* list : {&c.rested, &c.no_further, &c.fell}) list->push_back(static_cast<std::uint8_t>(below(256)));

@@ -140,7 +140,7 @@ TEST_CASE("a joint whose stiffness is left open closes by no more than the accur
     const double kn = at_rest.scenario.joints[0].normal_stiffness;
     const double settlement = 2500.0 * 9.81 * (3.0 + 2.0 + 1.0) / kn;  // of the top of three blocks of 1 m
     CHECK(settlement < 1e-3);
-    CHECK(settlement > 1e-8);
+    CHECK(settlement > 1e-10);  // what coordinates of some metres resolve
     CHECK(at_rest.scenario.joints[0].shear_stiffness == 0.5 * kn);
     CHECK(plan("until: {equilibrium: 1e-6}, accuracy: 1e-3", "", {stiff}).scenario.joints[0].normal_stiffness == 1e10);
 }
