@@ -207,7 +207,7 @@ StableStep stable_step(const Model& model, const Placed& placed, const State& st
 int step_halvings(double stage_step, int halvings_now, double speed, double thinnest) {
     int halvings = halvings_now;
     while (speed * std::ldexp(stage_step, -halvings) > 0.25 * thinnest)
-        if (++halvings > 40) throw DivergenceError("a block moves at " + std::to_string(speed) + " m/s");
+        if (++halvings > most_halvings) throw DivergenceError("a block moves at " + std::to_string(speed) + " m/s");
     while (halvings > 0 && speed * std::ldexp(stage_step, -(halvings - 1)) < 0.1 * thinnest) --halvings;
     return halvings;
 }

@@ -38,8 +38,10 @@ std::vector<Eigen::Matrix3d> boundary_stiffness(const Model& model, const Placed
 /// 2/omega for contact damping beta (s).
 double damped_limit(double omega, double beta);
 
+inline constexpr int most_halvings = 40;
+
 /// How often the step must be halved so that nothing moves further than a quarter of the thinnest part in one step; with
-/// hysteresis, so that it does not change to and fro. Throws DivergenceError beyond 40 halvings.
+/// hysteresis, so that it does not change to and fro. Throws DivergenceError beyond most_halvings.
 int step_halvings(double stage_step, int halvings_now, double speed, double thinnest);
 
 /// m/s, of the fastest point that loads and driving alone bring about within a step of dt from stage_time on, where tables

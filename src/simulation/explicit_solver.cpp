@@ -38,7 +38,10 @@ int Simulation::halvings_for(double speed) const {
     if (model_.driven.empty() && static_cast<int>(model_.loads.size()) == model_.boundary_loads) return halvings;
     const auto dt = [&] { return std::ldexp(state_.stage_step, -halvings); };
     const auto ahead = [&] { return std::max(speed, speed_ahead(model_, state_.stage_time, dt())); };
-    while (dt() > 0.0 && ahead() * dt() > 0.25 * narrowest_) ++halvings;
+    while (ahead() * dt() > 0.25 * narrowest_)
+        if (++halvings > most_halvings)
+            throw DivergenceError("a load or a driven block gives a speed of " + std::to_string(ahead()) +
+                                  " m/s within a step");
     return halvings;
 }
 
