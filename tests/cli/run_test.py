@@ -309,7 +309,7 @@ class Interrupts(Program):
                 killed += 1
             self.talus("info", "parts.h5")
             process = self.start("resume", "parts.h5")
-            if killed >= 8:
+            if killed >= 8 and interrupted >= 2:
                 break
         out, err = process.communicate(timeout=300)
         self.assertEqual(process.returncode, 0, out + err)
