@@ -73,12 +73,13 @@ void print_overlap(const Simulation& simulation) {
 void print_energy(const Simulation& simulation) {
     const Energies e = simulation.energies();
     const double turned_over = std::max(
-        {std::abs(e.gravity), std::abs(e.loads), std::abs(e.driven), e.kinetic, e.friction, e.strain_normal, 1e-300});
+        {std::abs(e.gravity), std::abs(e.loads), std::abs(e.driven), e.kinetic, e.friction, e.strain_normal,
+         simulation.state().ledger.largest, 1e-300});
     std::printf("  energy         kinetic %s, stored in joints %s, friction %s, damping %s, work of gravity %s\n",
                 number(e.kinetic, "J").c_str(), number(e.strain_normal + e.strain_shear, "J").c_str(),
                 number(e.friction, "J").c_str(), number(e.contact_damping + e.local_damping, "J").c_str(),
                 number(e.gravity, "J").c_str());
-    std::printf("  energy drift   %.2g of the largest of them; ledger closes to %.1g\n",
+    std::printf("  energy drift   %.2g of the largest energy; ledger closes to %.1g\n",
                 simulation.energy_drift() / turned_over, std::abs(simulation.ledger_error()) / turned_over);
 }
 

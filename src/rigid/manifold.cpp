@@ -12,6 +12,12 @@ namespace {
 // m; half or twice of it is as good: far above rounding, far below any distance that matters.
 constexpr double tie = 1e-9;
 
+// A corner whose edges both leave the face by more than this (sine) is a tip; less, and it is an edge along the face.
+constexpr double pointed = 1e-3;
+
+// Stretches that count as none: how deep a tip may be in the wall of a notch and still be met by it.
+constexpr double sunk = 10.0;
+
 struct BestEdge {
     double distance = -std::numeric_limits<double>::infinity();
     int edge = -1;
@@ -70,6 +76,37 @@ Manifold along_face(const PlacedPart& face, int k, const PlacedPart& other, cons
     return m;
 }
 
+/// The corner of `other` that lies deepest behind edge k of `face`; -1 if it is no tip, no corner of its block, or not in
+/// front of the edge.
+int tip_on_face(const PlacedPart& face, int k, const PlacedPart& other, const Vec2& to_other) {
+    const Vec2 &start = face.arm(k), &n = face.normal(k);
+    int tip = 0;
+    for (int i = 1; i < other.n; ++i)
+        if (n.dot(other.arm(i)) < n.dot(other.arm(tip))) tip = i;
+    if (other.internal[tip] || other.internal[other.previous(tip)]) return -1;
+    const Vec2 out = other.arm(other.next(tip)) - other.arm(tip), in = other.arm(other.previous(tip)) - other.arm(tip);
+    if (n.dot(out) <= pointed * out.norm() || n.dot(in) <= pointed * in.norm()) return -1;
+    const double s = perp(n).dot(other.arm(tip) + to_other - start);
+    return s >= -tie && s <= face.length[k] + tie ? tip : -1;
+}
+
+/// A tip in a notch: it meets the wall in the very corner where that ends, along no stretch.
+Manifold at_tip(const PlacedPart& face, int k, const PlacedPart& other, int tip, const Vec2& to_other, double reach) {
+    Manifold m;
+    const Vec2 place = other.arm(tip) + to_other;
+    m.normal = face.normal(k);
+    m.gap[0] = m.normal.dot(place - face.arm(k));
+    if (m.gap[0] > reach) return m;
+    m.count = 1;
+    m.corner_of_b[0] = true;
+    m.point[0] = place - 0.5 * m.gap[0] * m.normal;
+    m.edge_a = face.first + k;
+    m.edge_b = other.first + tip;
+    return m;
+}
+
+double cosine_of_corner(const PlacedPart& part, int k) { return -part.normal(part.previous(k)).dot(part.normal(k)); }
+
 /// The outer edge that the other part came through last, of those that kept the two apart at the start; `best.distance` is
 /// that time, in s before now, negative.
 void look_back(const PlacedPart& face, const PlacedPart& other, const Vec2& to_other, const Velocity& mine,
@@ -107,6 +144,14 @@ Manifold seen_from_a(Manifold m, const Vec2& d) {
     return m;
 }
 
+/// Of two corners that meet the sharper one is the tip.
+Manifold meet_at_tip(const PlacedPart& a, int edge_a, const PlacedPart& b, int edge_b, const Vec2& d, double reach) {
+    const int tip_of_b = tip_on_face(a, edge_a, b, d), tip_of_a = tip_on_face(b, edge_b, a, -d);
+    if (tip_of_a >= 0 && (tip_of_b < 0 || cosine_of_corner(a, tip_of_a) > cosine_of_corner(b, tip_of_b) + tie))
+        return seen_from_a(at_tip(b, edge_b, a, tip_of_a, -d, reach), d);
+    return tip_of_b >= 0 ? at_tip(a, edge_a, b, tip_of_b, d, reach) : Manifold{};
+}
+
 }  // namespace
 
 Manifold find_manifold(const PlacedPart& a, const PlacedPart& b, const Vec2& d, double reach, double narrow, int& hint) {
@@ -131,8 +176,16 @@ Manifold find_manifold(const PlacedPart& a, const PlacedPart& b, const Vec2& d, 
         m.distance = distance;
         return m;
     }
-    m = of_a.distance >= of_b.distance - tie ? along_face(a, of_a.edge, b, d, reach, narrow)
-                                             : seen_from_a(along_face(b, of_b.edge, a, -d, reach, narrow), d);
+    const auto along = [&](bool of_first) {
+        return of_first ? along_face(a, of_a.edge, b, d, reach, narrow)
+                        : seen_from_a(along_face(b, of_b.edge, a, -d, reach, narrow), d);
+    };
+    const bool first = of_a.distance >= of_b.distance - tie;
+    m = along(first);
+    if (m.length == 0.0 && std::min(of_a.distance, of_b.distance) >= -sunk * narrow) {
+        m = along(!first);
+        if (m.length == 0.0) m = meet_at_tip(a, of_a.edge, b, of_b.edge, d, reach);
+    }
     m.distance = distance;
     return m;
 }

@@ -274,6 +274,8 @@ def test_a_front_has_what_no_other_setting_beats():
 def test_an_error_that_dearer_settings_do_not_reach_is_an_accident():
     line = [fronts.Point(t, e, "") for t, e in ((1, 1e-4), (2, 2e-2), (3, 1e-2), (4, 3e-3), (5, 8e-3))]
     assert [p.cpu_time for p in fronts.confirmed(line)] == [2, 3, 4, 5]
+    line = [fronts.Point(t, e, "") for t, e in ((1.0, 1e-6), (1.1, 1e-4), (1.2, 1e-2))]
+    assert fronts.confirmed(line) == line, "finer at no cost"
 
 
 def test_times_read_well():

@@ -14,6 +14,8 @@ Rows = Iterable[Mapping[str, str]]
 # of the method has at most so many times of it, or there is none. With 1 hardly anything would count but lines that fall all the way,
 # with 10 the sign changes would.
 CONFIRMED = 3.0
+# Dearer by more than this: times of the same work differ by a quarter from run to run, and the static solver gets finer at no cost.
+DEARER = 1.5
 NOTHING = 1e-9  # smaller errors are the same
 
 
@@ -38,7 +40,8 @@ def points(rows: Rows, scene: str, error: str = LARGEST) -> dict[str, list[Point
 def confirmed(line: list[Point]) -> list[Point]:
     """Those of the points whose error is no accident. line: in the order of the CPU time."""
     return [point for k, point in enumerate(line)
-            if k + 1 == len(line) or min(later.error for later in line[k + 1:]) <= CONFIRMED * max(point.error, NOTHING)]
+            if line[-1].cpu_time <= DEARER * point.cpu_time
+            or min(later.error for later in line[k + 1:]) <= CONFIRMED * max(point.error, NOTHING)]
 
 
 def front(line: Iterable[Point]) -> list[Point]:
