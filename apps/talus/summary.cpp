@@ -211,7 +211,15 @@ void print_error_estimate(const ErrorEstimate& estimate, const std::optional<Acc
     std::printf("error, estimated from a run %s:\n", estimate.how.c_str());
     for (const ErrorOf& e : estimate.of)
         std::printf("  %-52s %-14.7g finer %-14.7g error about %.2g\n", e.what.c_str(), e.value, e.finer, e.error);
-    if (accuracy) std::printf("  accuracy asked for: %s\n", in_words(*accuracy).c_str());
+    if (!accuracy) return;
+    std::printf("  accuracy asked for: %s\n", in_words(*accuracy).c_str());
+    if (!accuracy->motion) return;
+    const bool held = estimate.of_motion <= *accuracy->motion;
+    std::printf("  %s: the largest displacement is wrong by about %.2g of the motion%s\n", held ? "held" : "WARNING: not held",
+                estimate.of_motion,
+                held ? ""
+                     : "; where a smaller run.accuracy does not help, what moves hangs on impacts or jammed joints that the "
+                       "scene does not determine");
 }
 
 int print_verdicts(const std::vector<Verdict>& verdicts, const std::string& indent) {

@@ -60,6 +60,15 @@ Finer finer(const Simulation& done, const std::vector<double>& steps) {
     return f;
 }
 
+/// m, square root of the mean area of the blocks that are free.
+double mean_size(const Model& model) {
+    double area = 0.0;
+    int free = 0;
+    for (BlockId b = 0; b < model.blocks.size(); ++b)
+        if (!model.blocks.held(b)) area += model.blocks.area[b], ++free;
+    return free > 0 ? std::sqrt(area / free) : 1.0;
+}
+
 }  // namespace
 
 std::vector<ExpectSpec> watched_for_error(const Scenario& scenario) {
@@ -86,10 +95,14 @@ ErrorEstimate estimate_error(const Simulation& done, const std::vector<double>& 
     options.watch = &watch;
     run(simulation, options);
     const std::vector<Verdict> finer = watch.judge();
-    ErrorEstimate estimate{again.how, {}};
+    ErrorEstimate estimate{again.how, {}, 0.0};
     for (std::size_t i = 0; i < std::min(measured.size(), finer.size()); ++i)
         estimate.of.push_back({measured[i].what, measured[i].measured, finer[i].measured,
                                std::abs(measured[i].measured - finer[i].measured) / (1.0 - again.left)});
+    if (!estimate.of.empty()) {
+        const ErrorOf& farthest = estimate.of.front();
+        estimate.of_motion = farthest.error / std::max({farthest.value, farthest.finer, mean_size(done.model())});
+    }
     return estimate;
 }
 

@@ -17,8 +17,9 @@ struct ErrorOf {
 };
 
 struct ErrorEstimate {
-    std::string how;  // "with steps of 0.45 of the length"
-    std::vector<ErrorOf> of;
+    std::string how;          // "with steps of 0.45 of the length"
+    std::vector<ErrorOf> of;  // the largest displacement first
+    double of_motion = 0.0;   // error of that, as a share of it; where blocks hardly move, of the size of a mean one
 };
 
 /// What is watched in a run whose error is to be estimated: the largest displacement, every history at its end, and what the

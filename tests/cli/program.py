@@ -27,6 +27,18 @@ run: {until: {time: 0.1}}
 record: {history: [{name: block, point: [6.75, 4]}]}
 """
 
+# Columns of 1 x 5 m side by side, on a plane that dips at 20 degrees: as they begin to turn they press their feet apart and jam.
+COLUMNS = """\
+title: Columns
+gravity: [3.3552, -9.2184]
+materials: {rock: {density: 2500}}
+joints: {face: {friction_angle_deg: 35}}
+blocks:
+  - {name: plane, rectangle: {corner: [-10, -1], size: [40, 1]}, held: true}
+  - {name: column, rectangle: {corner: [0, 0], size: [1, 5]}, repeat: {count: 5, step: [1, 0]}}
+run: {until: {time: 1.5}, accuracy: 1e-2}
+"""
+
 # Runs for a second or two, with stages, frames, contacts that slide, and histories at two intervals.
 SLOPE = """\
 title: Small jointed slope

@@ -11,7 +11,7 @@ import signal
 import subprocess
 import unittest
 
-from program import INCLINE, SLOPE, STACK, TALUS, Program, interrupt, main, SOURCE
+from program import COLUMNS, INCLINE, SLOPE, STACK, TALUS, Program, interrupt, main, SOURCE
 
 
 class Results(Program):
@@ -87,7 +87,7 @@ cases:
         self.assertEqual((self.folder / "flat/block.csv").read_text(), (self.folder / "set/block.csv").read_text())
 
     def test_the_resolved_scenario_is_json_and_reads_back_as_the_same(self):
-        for text in (INCLINE, SLOPE):
+        for text in (COLUMNS, INCLINE, SLOPE):
             self.write("scene.yaml", text)
             resolved, _ = self.talus("check", "scene.yaml", "--resolved")
             self.assertEqual(json.loads(resolved)["run"]["step_fraction"], 0.8)  # a default, filled in
@@ -142,6 +142,13 @@ cases:
         self.assertRegex(out, r"error, estimated from a run with steps of 0\.45 of the length:\n +max_displacement .*error about")
         self.assertEqual(len(re.findall("error about", out)), 5)  # two histories of two components, displacement and velocity
         self.assertNotIn("error about", self.talus("run", "slope.yaml")[0])
+        out, _ = self.talus("run", "slope.yaml", "--set", "run.accuracy=1e-2", "--estimate-error", "--force")
+        self.assertRegex(out, r"\n  held: the largest displacement is wrong by about [0-9.e-]+ of the motion\n")
+
+    def test_an_accuracy_that_was_not_held_is_told(self):  # rigid columns jam while they begin to turn
+        self.write("columns.yaml", COLUMNS)
+        out, _ = self.talus("run", "columns.yaml", "--estimate-error")
+        self.assertRegex(out, r"WARNING: not held: the largest displacement is wrong by about 0\.[0-9]+ of the motion; where")
 
     def test_search_and_threads_leave_no_trace_in_the_results(self):
         self.write("slope.yaml", SLOPE)
