@@ -17,7 +17,7 @@ const std::vector<Quantity>& quantities() {
         {"spin", "rad/s", body, {}, "", true, "angular velocity, counter-clockwise"},
         {"acceleration", "m/s2", body, vector, "magnitude", false,
          "change of velocity over `between`, divided by its length"},
-        {"frequency", "Hz", body, axis, "", false, "of the oscillation of `of` about its mean, from its crossings"},
+        {"frequency", "Hz", body, axis, "", false, "of the oscillation of `of`, from its maxima"},
         {"decrement", "1", body, axis, "", false, "mean logarithm of the ratio of successive peaks of `of`"},
         {"normal_force", "N", joint, {}, "", true, "compression positive"},
         {"shear_force",

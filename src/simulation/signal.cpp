@@ -36,16 +36,18 @@ std::vector<std::size_t> upward_crossings(const Signal& s) {
     return crossings;
 }
 
-double crossing_time(const Signal& s, std::size_t before) {
-    const double mean = std::accumulate(s.value.begin(), s.value.end(), 0.0) / static_cast<double>(s.value.size());
-    const double share = (mean - s.value[before]) / (s.value[before + 1] - s.value[before]);
-    return s.time[before] + share * (s.time[before + 1] - s.time[before]);
-}
-
 /// Extreme of the parabola through samples i - 1, i, i + 1 (nearly equal steps).
 double parabola_extreme(const std::vector<double>& v, std::size_t i) {
     const double slope = 0.5 * (v[i + 1] - v[i - 1]), curvature = v[i + 1] - 2.0 * v[i] + v[i - 1];
     return curvature == 0.0 ? v[i] : v[i] - 0.5 * slope * slope / curvature;
+}
+
+/// s, of that extreme.
+double time_of_extreme(const Signal& s, std::size_t i) {
+    const double slope = 0.5 * (s.value[i + 1] - s.value[i - 1]);
+    const double curvature = s.value[i + 1] - 2.0 * s.value[i] + s.value[i - 1];
+    const double share = curvature == 0.0 ? 0.0 : std::clamp(-slope / curvature, -1.0, 1.0);
+    return s.time[i] + share * 0.5 * (s.time[i + 1] - s.time[i - 1]);
 }
 
 /// Drops from each maximum to the minimum after it.
@@ -85,11 +87,20 @@ double mean_rate(const Signal& s, double first, double last) {
     return i == j ? not_measurable : (s.value[j] - s.value[i]) / (s.time[j] - s.time[i]);
 }
 
+// The mean of an oscillation that dies away is not its level at rest, and the crossings of any other level are uneven; its maxima
+// are even.
 double frequency(const Signal& s) {
-    const auto crossings = upward_crossings(s);
-    if (crossings.size() < 2) return not_measurable;
-    const double span = crossing_time(s, crossings.back()) - crossing_time(s, crossings.front());
-    return static_cast<double>(crossings.size() - 1) / span;
+    std::vector<std::size_t> starts = upward_crossings(s), tops;
+    if (starts.empty()) return not_measurable;
+    starts.insert(starts.begin(), 0);
+    starts.push_back(s.value.size() - 1);
+    for (std::size_t k = 0; k + 1 < starts.size(); ++k) {
+        const auto top = std::max_element(s.value.begin() + starts[k], s.value.begin() + starts[k + 1]);
+        const auto i = static_cast<std::size_t>(top - s.value.begin());
+        if (i > starts[k] && s.value[i] > s.value[i + 1]) tops.push_back(i);  // not on its way down or up at an end
+    }
+    if (tops.size() < 2) return not_measurable;
+    return static_cast<double>(tops.size() - 1) / (time_of_extreme(s, tops.back()) - time_of_extreme(s, tops.front()));
 }
 
 double decrement(const Signal& s) {

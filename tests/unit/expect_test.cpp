@@ -52,6 +52,18 @@ TEST_CASE("a frequency is found from fractions of periods, about a mean that is 
     CHECK(std::isnan(frequency(sampled(0.1, 10, [](double t) { return t; }))));
 }
 
+TEST_CASE("a frequency is that of the damped oscillation, whatever the level and the part of it that is seen") {
+    const double w = 40.0;
+    for (const double xi : {0.02, 0.11, 0.18, 0.3})
+        for (const double phase : {0.0, 0.7, 2.0}) {
+            const double damped = w * std::sqrt(1 - xi * xi);
+            const Signal s = sampled(1e-4, 6000, [&](double t) {
+                return -2.5 + std::exp(-xi * w * t) * std::cos(damped * t + phase);
+            });
+            CHECK(frequency(s) == Approx(damped / (2 * pi)).epsilon(1e-5));
+        }
+}
+
 TEST_CASE("a decrement does not depend on the level about which the oscillation dies out") {
     const double xi = 0.05, w = 40.0, damped = w * std::sqrt(1 - xi * xi);
     for (const double level : {0.0, -2.5}) {
