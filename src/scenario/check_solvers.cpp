@@ -46,7 +46,7 @@ void check_joints(const Cursor& joints, bool any_rigid, bool all_rigid, bool may
     for (const auto& [name, joint] : joints.names()) {
         if (any_rigid && joint["dilation_angle_deg"].number() > 0.0)
             joint["dilation_angle_deg"].fault("the rigid solver has no dilation; solver: explicit has it");
-        if (!all_rigid && !may_be_rigid && joint["restitution"].number() > 0.0)
+        if (!all_rigid && !may_be_rigid && joint["restitution"].given())
             joint["restitution"].fault(
                 "only the rigid solver has it (run.solver: rigid); with joint stiffness blocks "
                 "rebound by themselves, and damping.contact takes energy");
