@@ -4,6 +4,7 @@
 
 #include "core/memory.hpp"
 #include "core/text.hpp"
+#include "model/title.hpp"
 #include "output/output_path.hpp"
 #include "output/results.hpp"
 #include "scenario/reader.hpp"
@@ -132,7 +133,7 @@ void print_step(const Simulation& simulation) {
         std::printf(": rigorous bound %s, limit estimated at %s\n", number(stable.bound, "s").c_str(),
                     number(stable.estimate, "s").c_str());
         if (stable.block >= 0)
-            std::printf("               governed by %s, %s\n", block_and_place(simulation.model(), stable.block).c_str(),
+            std::printf("               governed by %s, %s\n", title_and_place(simulation.model(), stable.block).c_str(),
                         number(simulation.model().blocks.area[stable.block], "m2").c_str());
         const std::string substeps = substeps_in_words(simulation);
         const double gain = simulation.scenario().run.substeps == 1 ? simulation.gain_of_substeps() : 1.0;

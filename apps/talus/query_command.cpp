@@ -32,7 +32,7 @@ std::vector<double> numbers(const std::string& option, const std::string& text, 
 }
 
 void print_block(const Snapshot& s, BlockId b) {
-    const std::string name = s.name[b].empty() ? "" : " '" + s.name[b] + "'";
+    const std::string name = s.name[b].empty() ? "" : " `" + s.name[b] + "`";
     std::printf("block %d%s at %s", b, name.c_str(), place(s.position[b] + s.origin, std::sqrt(s.area[b])).c_str());
 }
 

@@ -2,6 +2,7 @@
 
 #include "core/memory.hpp"
 #include "core/text.hpp"
+#include "model/title.hpp"
 #include "output/static_table.hpp"
 #include "simulation/deep_overlap.hpp"
 #include "simulation/trial.hpp"
@@ -34,7 +35,7 @@ void print_movers(const Simulation& simulation) {
     for (std::size_t i = 0; i < shown && moved[order[i]] > 0.0; ++i) {
         const BlockId b = order[i];
         std::printf("  %s %s: moved %s, turned %.3g deg, speed %s\n", i == 0 ? "largest movers" : "              ",
-                    block_and_place(model, b).c_str(), number(moved[b], "m").c_str(),
+                    title_and_place(model, b).c_str(), number(moved[b], "m").c_str(),
                     degrees(state.motion.angle[b] - state.start_angle[b]),
                     number(state.motion.velocity[b].norm(), "m/s").c_str());
     }
@@ -72,9 +73,8 @@ void print_overlap(const Simulation& simulation) {
 
 void print_energy(const Simulation& simulation) {
     const Energies e = simulation.energies();
-    const double turned_over = std::max(
-        {std::abs(e.gravity), std::abs(e.loads), std::abs(e.driven), e.kinetic, e.friction, e.strain_normal,
-         simulation.state().ledger.largest, 1e-300});
+    const double turned_over = std::max({std::abs(e.gravity), std::abs(e.loads), std::abs(e.driven), e.kinetic, e.friction,
+                                         e.strain_normal, simulation.state().ledger.largest, 1e-300});
     std::printf("  energy         kinetic %s, stored in joints %s, friction %s, damping %s, work of gravity %s\n",
                 number(e.kinetic, "J").c_str(), number(e.strain_normal + e.strain_shear, "J").c_str(),
                 number(e.friction, "J").c_str(), number(e.contact_damping + e.local_damping, "J").c_str(),
@@ -152,12 +152,6 @@ std::string number(double value, const char* unit) {
     return text;
 }
 
-std::string block_and_place(const Model& model, BlockId b) {
-    const std::string& name = model.blocks.name[b];
-    return "block " + std::to_string(b) + (name.empty() ? "" : " '" + name + "'") + " at " +
-           place(model.blocks.start[b] + model.origin, std::sqrt(model.blocks.area[b]));
-}
-
 std::string in_words(const AccuracySpec& accuracy) {
     std::string text;
     if (accuracy.motion) text = number(*accuracy.motion) + " of the motion";
@@ -215,8 +209,8 @@ void print_error_estimate(const ErrorEstimate& estimate, const std::optional<Acc
     std::printf("  accuracy asked for: %s\n", in_words(*accuracy).c_str());
     if (!accuracy->motion) return;
     const bool held = estimate.of_motion <= *accuracy->motion;
-    std::printf("  %s: the largest displacement is wrong by about %.2g of the motion%s\n", held ? "held" : "WARNING: not held",
-                estimate.of_motion,
+    std::printf("  %s: the largest displacement is wrong by about %.2g of the motion%s\n",
+                held ? "held" : "WARNING: not held", estimate.of_motion,
                 held ? ""
                      : "; where a smaller run.accuracy does not help, what moves hangs on impacts or jammed joints that the "
                        "scene does not determine");

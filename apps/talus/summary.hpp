@@ -13,9 +13,6 @@ namespace talus::cli {
 /// "1.23e6 J", "0.5 mm": a number with four digits and its unit.
 std::string number(double value, const char* unit = "");
 
-/// "block 7 'key' at (x, y)", with as many digits as it takes to find the block, on a map too.
-std::string block_and_place(const Model& model, BlockId block);
-
 /// "0.001 of the motion".
 std::string in_words(const AccuracySpec& accuracy);
 

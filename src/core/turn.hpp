@@ -2,6 +2,8 @@
 // them.
 #pragma once
 
+#include "core/types.hpp"
+
 namespace talus {
 
 struct Turn {
@@ -41,5 +43,8 @@ inline Turn turn(double angle) {
     const bool back = quarter * quarter == 4.0;
     return {back | (quarter == 1.0) ? -c : c, back | (quarter == -1.0) ? -s : s};
 }
+
+inline Vec2 turned(const Vec2& v, const Turn& t) { return {t.c * v.x() - t.s * v.y(), t.s * v.x() + t.c * v.y()}; }
+inline Vec2 turned(const Vec2& v, double angle) { return turned(v, turn(angle)); }
 
 }  // namespace talus

@@ -26,9 +26,7 @@ double force_squared(const Model& model, const Awake& awake, std::span<const For
 }
 
 Force load_of(const Load& l, const Vec2& force, double moment, double angle) {
-    const auto [c, s] = turn(angle);
-    const Vec2 arm(c * l.arm.x() - s * l.arm.y(), s * l.arm.x() + c * l.arm.y());
-    return {force, cross(arm, force) + moment};
+    return {force, cross(turned(l.arm, angle), force) + moment};
 }
 
 }  // namespace

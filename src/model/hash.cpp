@@ -1,27 +1,25 @@
 #include "model/hash.hpp"
 
+#include "core/fnv1a.hpp"
+
 #include <bit>
 
 namespace talus {
 namespace {
 
-// FNV-1a, 64 bits, byte by byte, lowest first [Fowler, Noll & Vo].
 class Hash {
 public:
     Hash& operator<<(std::uint64_t bits) {
-        for (int byte = 0; byte < 8; ++byte) {
-            value_ ^= (bits >> (8 * byte)) & 0xffU;
-            value_ *= 0x100000001b3ULL;
-        }
+        for (int byte = 0; byte < 8; ++byte) hash_.add((bits >> (8 * byte)) & 0xffU);  // lowest first
         return *this;
     }
     Hash& operator<<(double x) { return *this << std::bit_cast<std::uint64_t>(x + 0.0); }  // -0.0 + 0.0 is 0.0
     Hash& operator<<(const Vec2& v) { return *this << v.x() << v.y(); }
     Hash& operator<<(int i) { return *this << static_cast<std::uint64_t>(static_cast<std::int64_t>(i)); }
-    std::uint64_t value() const { return value_; }
+    std::uint64_t value() const { return hash_.value; }
 
 private:
-    std::uint64_t value_ = 0xcbf29ce484222325ULL;
+    Fnv1a hash_;
 };
 
 void add(Hash& hash, const Contact& contact) {

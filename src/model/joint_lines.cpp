@@ -1,6 +1,7 @@
 #include "model/joint_lines.hpp"
 
 #include "core/errors.hpp"
+#include "core/fnv1a.hpp"
 #include "core/random.hpp"
 #include "geometry/polygon.hpp"
 #include "model/trace_lines.hpp"
@@ -56,11 +57,7 @@ double draw_angle(const Spread& spread, Random& random) {
 
 // ---- streams -------------------------------------------------------------------------------------------------------
 
-std::uint64_t seed_of(const JointSetSpec& set) {
-    std::uint64_t hash = 0xcbf29ce484222325ull;  // FNV-1a of the name
-    for (const char c : set.name) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ull;
-    return Random(set.seed ^ hash).bits();
-}
+std::uint64_t seed_of(const JointSetSpec& set) { return Random(set.seed ^ fnv1a(set.name)).bits(); }
 
 /// Independent generators for the uses of one joint line: neighbouring seeds are scrambled by one step of the generator.
 enum class Use : std::uint64_t { spacing, angle, phase, forward, backward };

@@ -1,16 +1,10 @@
 // A point that moves with its block.
 #pragma once
 
-#include "core/types.hpp"
+#include "core/turn.hpp"
 #include "model/state.hpp"
 
-#include <cmath>
-
 namespace talus {
-
-inline Vec2 turned(const Vec2& v, double angle) {
-    return {std::cos(angle) * v.x() - std::sin(angle) * v.y(), std::sin(angle) * v.x() + std::cos(angle) * v.y()};
-}
 
 struct MaterialPoint {
     BlockId block;

@@ -1,5 +1,6 @@
 #include "model/measure.hpp"
 
+#include "core/turn.hpp"
 #include "model/select.hpp"
 
 #include <algorithm>
@@ -9,11 +10,6 @@ namespace talus {
 namespace {
 
 constexpr double on_edge = 1e-9;  // m, a point this near to a block belongs to it
-
-Vec2 turned(const Vec2& v, double angle) {
-    const double c = std::cos(angle), s = std::sin(angle);
-    return {c * v.x() - s * v.y(), s * v.x() + c * v.y()};
-}
 
 // N per block: sum of the magnitudes of the contact forces.
 std::vector<double> contact_forces(const Model& model, const Contacts& contacts) {
@@ -71,14 +67,6 @@ Unbalance unbalance(const Model& model, const State& state) {
     found.pressed /= std::max(moving, 1);
     found.weight /= std::max(moving, 1);
     return found;
-}
-
-Vec2 displacement(const Model&, const State& state, BlockId b, const Vec2& start_point) {
-    // x - x0 = (c - c0) + (R - 1) r with r the arm at the start; written without the difference of two large numbers.
-    const Vec2 arm = start_point - state.start_position[b];
-    const double angle = state.motion.angle[b] - state.start_angle[b];
-    const double half = std::sin(angle / 2.0);
-    return state.motion.position[b] - state.start_position[b] - 2.0 * half * half * arm + std::sin(angle) * perp(arm);
 }
 
 double max_speed(const Model& model, const State& state) {

@@ -42,9 +42,6 @@ Unbalance unbalance(const Model& model, const State& state);
 /// gyration.
 double out_of_balance(const Blocks& blocks, BlockId b, const Force& load);
 
-/// Displacement since the start (or the last reset) of the point of block b that was at `start_point` (m) then.
-Vec2 displacement(const Model& model, const State& state, BlockId b, const Vec2& start_point);
-
 double max_speed(const Model& model, const State& state);  // m/s, of any corner (bound: |v| + |spin| radius)
 
 /// Block that contains the point now, -1 if none; the first one if several do (touching edges).

@@ -10,7 +10,6 @@ namespace {
 
 constexpr double on_edge = 1e-9;  // m, far below any gap that matters
 
-Vec2 turned(const Vec2& v, const Turn& t) { return {t.c * v.x() - t.s * v.y(), t.s * v.x() + t.c * v.y()}; }
 Vec2 turned_back(const Vec2& v, const Turn& t) { return {t.c * v.x() + t.s * v.y(), t.c * v.y() - t.s * v.x()}; }
 
 std::vector<PartId> parts_there(const Parts& parts, std::span<const std::uint8_t> removed) {

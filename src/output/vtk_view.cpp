@@ -1,5 +1,7 @@
 #include "output/vtk_view.hpp"
 
+#include "core/turn.hpp"
+
 #include <cmath>
 #include <string>
 #include <vector>
@@ -86,11 +88,9 @@ std::vector<float> points_now(const Model& model, const State& state) {
     points.reserve(3 * static_cast<std::size_t>(model.corners.size()));
     for (PartId p = 0; p < model.parts.size(); ++p) {
         const BlockId b = model.parts.block[p];
-        const double c = std::cos(state.motion.angle[b]), s = std::sin(state.motion.angle[b]);
-        for (int k = model.parts.first_corner[p]; k < model.parts.first_corner[p + 1]; ++k) {
-            const Vec2& arm = model.corners.arm[k];
-            add3(points, state.motion.position[b] + Vec2(c * arm.x() - s * arm.y(), s * arm.x() + c * arm.y()));
-        }
+        const Turn now = turn(state.motion.angle[b]);
+        for (int k = model.parts.first_corner[p]; k < model.parts.first_corner[p + 1]; ++k)
+            add3(points, state.motion.position[b] + turned(model.corners.arm[k], now));
     }
     return points;
 }

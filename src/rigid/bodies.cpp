@@ -4,6 +4,7 @@
 #include "core/parallel.hpp"
 #include "core/text.hpp"
 #include "core/turn.hpp"
+#include "model/title.hpp"
 
 #include <algorithm>
 #include <numeric>
@@ -29,13 +30,6 @@ private:
     std::vector<int> parent_;
 };
 
-std::string title(const Model& model, BlockId b) {
-    const Vec2 at = model.blocks.start[b] + model.origin;
-    const std::string& name = model.blocks.name[b];
-    return "block " + std::to_string(b) + (name.empty() ? "" : " `" + name + "`") + " at (" + number(at.x()) + ", " +
-           number(at.y()) + ")";
-}
-
 constexpr const char* remedy = "; give its contacts a joint without cohesion and tension, or use solver: explicit";
 
 // What is held or driven along all axes takes along all that is bonded to it.
@@ -47,18 +41,18 @@ BlockId driver_of(const Model& model, std::span<const BlockId> members) {
         if (free) continue;
         if (!blocks.held(b))
             throw InputError("the rigid solver cannot bond a block that is held or driven along some axes only to others: " +
-                             title(model, b) + remedy);
+                             title_and_place(model, b) + remedy);
         const bool drives = std::ranges::any_of(
             model.driven, [&](const DrivenBlock& d) { return d.block == b && (d.x || d.y || d.rotation); });
         BlockId& mine = drives ? driver : held;
         if (drives && driver >= 0)
-            throw InputError("the rigid solver cannot bond blocks that are both driven: " + title(model, driver) + " and " +
-                             title(model, b) + remedy);
+            throw InputError("the rigid solver cannot bond blocks that are both driven: " + title_and_place(model, driver) +
+                             " and " + title_and_place(model, b) + remedy);
         mine = b;
     }
     if (driver >= 0 && held >= 0)
-        throw InputError("the rigid solver cannot bond a block that is driven to one that is held: " + title(model, driver) +
-                         " and " + title(model, held) + remedy);
+        throw InputError("the rigid solver cannot bond a block that is driven to one that is held: " +
+                         title_and_place(model, driver) + " and " + title_and_place(model, held) + remedy);
     return driver;
 }
 

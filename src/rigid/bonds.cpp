@@ -12,8 +12,6 @@ namespace {
 // Below this share of the stress of its surroundings a pull is rounding: 1e-9 is far above it, and far below what breaks.
 constexpr double rounding = 1e-9;
 
-Vec2 turned(const Turn& t, const Vec2& v) { return {t.c * v.x() - t.s * v.y(), t.s * v.x() + t.c * v.y()}; }
-
 struct Cells {                                       // the intact ones of a face
     double length = 0.0, first = 0.0, second = 0.0;  // m, m2, m3: moments about the start of edge a
 };
@@ -139,7 +137,7 @@ int Bonds::carry(const Model& model, std::span<const Force> load, State& state) 
     for (BlockId b = 0; b < model.blocks.size(); ++b) {
         if (unknown_[b] < 0) continue;
         const Turn back = turn(-state.motion.angle[b]);  // the body as it was built
-        const Vec2 f = turned(back, load[b].force);
+        const Vec2 f = turned(load[b].force, back);
         force.segment<3>(3 * unknown_[b]) << f.x(), f.y(), load[b].torque;
     }
     const Eigen::VectorXd moved = unknowns_ > 0 ? Eigen::VectorXd(stiffness_->solve(force)) : force;
@@ -157,7 +155,7 @@ int Bonds::carry(const Model& model, std::span<const Force> load, State& state) 
 
         const BlockId a = model.parts.block[c.part_a];
         const Turn now = turn(state.motion.angle[a]);
-        c.normal = turned(now, f.normal);
+        c.normal = turned(f.normal, now);
         c.touching = c.alive = 1;
         c.sliding = 0;
         c.edge_a = face.edge_a, c.edge_b = face.edge_b;
@@ -169,7 +167,7 @@ int Bonds::carry(const Model& model, std::span<const Force> load, State& state) 
         c.strength = joint.cohesion * f.length + joint.tan_friction * std::max(normal, 0.0);
         c.moment = f.kr * turning;
         const double centre = normal > 0.0 ? std::clamp(c.moment / normal, -0.5 * f.length, 0.5 * f.length) : 0.0;
-        const Vec2 arm = turned(now, f.arm_a), from_b = turned(now, f.arm_b);
+        const Vec2 arm = turned(f.arm_a, now), from_b = turned(f.arm_b, now);
         c.point = state.motion.position[a] + arm + centre * perp(c.normal);
         const Vec2 total = normal * c.normal + shear * perp(c.normal);
         // Pressure at s along perp(normal) turns b by -s x its share.

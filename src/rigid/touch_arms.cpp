@@ -6,8 +6,7 @@ namespace talus::rigid {
 
 void set_arms(const Manifold& m, const Vec2& from_a, const Bodies& bodies, const Ahead& ahead, Touch& c) {
     const Velocity& face = m.face_of_b ? ahead.b : ahead.a;
-    const Turn turned = turn(ahead.time * face.spin);
-    const Vec2 n = turned.c * m.normal + turned.s * perp(m.normal);
+    const Vec2 n = turned(m.normal, ahead.time * face.spin);
     c.nx = n.x(), c.ny = n.y();
     const Vec2 to_b = bodies.position[c.b] - bodies.position[c.a];
     const Vec2 apart = to_b + ahead.time * Vec2(ahead.b.x - ahead.a.x, ahead.b.y - ahead.a.y);
@@ -17,7 +16,7 @@ void set_arms(const Manifold& m, const Vec2& from_a, const Bodies& bodies, const
             const bool of_b = m.corner_of_b[end];
             const Turn own = turn(ahead.time * (of_b ? ahead.b.spin : ahead.a.spin));
             const Vec2 corner = arm + (of_b ? 0.5 : -0.5) * m.gap[end] * m.normal - (of_b ? to_b : Vec2(Vec2::Zero()));
-            arm = own.c * corner + own.s * perp(corner) + (of_b ? apart : Vec2(Vec2::Zero()));
+            arm = turned(corner, own) + (of_b ? apart : Vec2(Vec2::Zero()));
         }
         c.arm_a[end] = cross(arm, n);
         c.arm_b[end] = cross(arm - apart, n);

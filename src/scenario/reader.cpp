@@ -1,5 +1,6 @@
 #include "scenario/reader.hpp"
 
+#include "core/fnv1a.hpp"
 #include "scenario/check.hpp"
 #include "scenario/convert.hpp"
 #include "scenario/derive.hpp"
@@ -28,12 +29,6 @@ Input load(const std::string& path) {
     if (file && !std::filesystem::is_directory(path)) text << file.rdbuf();
     if (!file || std::filesystem::is_directory(path)) throw InputError(path + ": cannot be read");
     return {text.str(), path, std::filesystem::path(path).parent_path().string()};
-}
-
-std::uint64_t fnv1a(const std::string& text) {
-    std::uint64_t hash = 0xcbf29ce484222325ull;
-    for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ull;
-    return hash;
 }
 
 // Hash of everything the scenario says, and of what is in the files it only names.

@@ -2,6 +2,7 @@
 
 #include "contact/separation.hpp"
 #include "core/text.hpp"
+#include "model/title.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -53,11 +54,6 @@ double depth(const Model& model, const Placed& placed, const Contact& c) {
     const PlacedPart a(model, placed, c.part_a), b(model, placed, c.part_b);
     const Vec2 way = placed.block[model.parts.block[c.part_b]].position - placed.block[model.parts.block[c.part_a]].position;
     return -std::max(distance_by_outer_edges(a, b, way.x(), way.y()), distance_by_outer_edges(b, a, -way.x(), -way.y()));
-}
-
-std::string title(const Model& model, BlockId block) {
-    const std::string& name = model.blocks.name[block];
-    return "block " + std::to_string(block) + (name.empty() ? "" : " `" + name + "`");
 }
 
 class Deepest {

@@ -4,6 +4,7 @@
 #include "core/memory.hpp"
 #include "dynamics/motion.hpp"
 #include "model/part_boxes.hpp"
+#include "model/title.hpp"
 #include "rigid/scratch.hpp"
 #include "verdict/course.hpp"
 
@@ -145,9 +146,7 @@ void Simulation::check_speed() const {
     for (BlockId b = 0; b < model_.blocks.size(); ++b) {
         const Vec2& v = state_.motion.velocity[b];
         if (std::isfinite(v.x()) && std::isfinite(v.y()) && std::isfinite(state_.motion.spin[b])) continue;
-        const Vec2 at = model_.blocks.start[b] + model_.origin;
-        throw DivergenceError("block " + std::to_string(b) + ", at (" + std::to_string(at.x()) + ", " +
-                              std::to_string(at.y()) + ") at the start, has no finite velocity any more: t = " +
+        throw DivergenceError(title_and_place(model_, b) + " at the start has no finite velocity any more: t = " +
                               std::to_string(state_.time) + " s, step " + std::to_string(state_.total_steps) +
                               "; the step is too long for the stiffness, or loads grow without bound: leave "
                               "run.time_step out, or look at the last frame");

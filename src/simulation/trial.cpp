@@ -2,6 +2,7 @@
 
 #include "core/errors.hpp"
 #include "core/text.hpp"
+#include "model/title.hpp"
 #include "output/static_table.hpp"
 #include "simulation/deep_overlap.hpp"
 #include "simulation/run.hpp"
@@ -28,10 +29,7 @@ std::string out_of_iterations(const Simulation& simulation, const StageSpec& sta
     if (now.moving < 0)
         return "stage " + stage.name + " did not come to equilibrium in " + std::to_string(now.iterations) +
                " iterations: " + ratio + ", drift " + number(now.drift);
-    const Model& model = simulation.model();
-    const std::string name = model.blocks.name[now.moving].empty() ? "" : " '" + model.blocks.name[now.moving] + "'";
-    return "stage " + stage.name + " has no equilibrium: block " + std::to_string(now.moving) + name + " at " +
-           place(model.blocks.start[now.moving] + model.origin, std::sqrt(model.blocks.area[now.moving])) +
+    return "stage " + stage.name + " has no equilibrium: " + title_and_place(simulation.model(), now.moving) +
            " keeps moving; " + ratio;
 }
 

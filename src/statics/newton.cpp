@@ -85,8 +85,7 @@ void Newton::System::assemble(const Model& model, const Placed& placed, const Sc
         for (int i = 0; i < 3; ++i)
             for (int j = 0; j < 3; ++j) add(unknown[3 * b + i], unknown[3 * b + j], shift * mass.mass(b)(i, j));
     for (const Load& l : model.loads) {  // a force at an arm: the torque falls by arm . force with the angle
-        const auto [c, s] = turn(state.motion.angle[l.block]);
-        const Vec2 arm(c * l.arm.x() - s * l.arm.y(), s * l.arm.x() + c * l.arm.y());
+        const Vec2 arm = turned(l.arm, state.motion.angle[l.block]);
         const int angle = unknown[3 * l.block + 2];
         add(angle, angle, arm.dot(Vec2(l.force_x(state.stage_time), l.force_y(state.stage_time))));
     }

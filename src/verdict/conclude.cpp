@@ -2,6 +2,7 @@
 
 #include "core/text.hpp"
 #include "model/measure.hpp"
+#include "model/title.hpp"
 #include "verdict/course.hpp"
 #include "verdict/mechanism.hpp"
 #include "verdict/way.hpp"
@@ -19,12 +20,6 @@ constexpr double at_the_end = 0.5;  // of the windows that are waited for when a
 constexpr double takes_along = 0.25;
 
 double ratio(double now, double before) { return before > 0.0 ? now / before : 0.0; }
-
-std::string block_text(const Model& model, BlockId b) {
-    const std::string& name = model.blocks.name[b];
-    return "block " + std::to_string(b) + (name.empty() ? "" : " '" + name + "'") + " at " +
-           place(model.blocks.start[b] + model.origin, std::sqrt(model.blocks.area[b]));
-}
 
 void count(const Model& model, const State& state, StabilityVerdict& v) {
     std::vector<std::uint8_t> touched(model.blocks.size(), 0);
@@ -68,7 +63,7 @@ std::string motion_text(const Model& model, const State& state, BlockId b) {
     const double way = way_gone(model, state, b);
     std::ostringstream text;
     text.precision(3);
-    text << block_text(model, b) << " has gone " << way << " m, " << way / std::sqrt(model.blocks.area[b])
+    text << title_and_place(model, b) << " has gone " << way << " m, " << way / std::sqrt(model.blocks.area[b])
          << " of its size, at " << c.speed[b] << " m/s in the mean of the last " << c.window << " s and "
          << c.speed_before[b] << " m/s before";
     return text.str();
@@ -84,7 +79,7 @@ std::string rest_text(const Model& model, const State& state) {
     if (farthest < 0) return "";
     std::ostringstream text;
     text.precision(3);
-    text << "; " << block_text(model, farthest) << " came to rest " << way_gone(model, state, farthest) << " m away";
+    text << "; " << title_and_place(model, farthest) << " came to rest " << way_gone(model, state, farthest) << " m away";
     return text.str();
 }
 
@@ -108,7 +103,7 @@ std::string reason(const Model& model, const State& state, bool loads_are_on, co
     } else if (v.verdict == Stability::stable && v.moving_blocks > 0) {
         text << "less than a failure comes loose: " << share_text(v) << "; all others rest, or come no further";
     } else if (v.verdict == Stability::stable) {
-        text << "all blocks that are free rest, or come no further; the fastest, " << block_text(model, b) << ", at "
+        text << "all blocks that are free rest, or come no further; the fastest, " << title_and_place(model, b) << ", at "
              << c.speed[b] << " m/s in the mean of " << c.window << " s, where joints give " << c.give << " m"
              << rest_text(model, state);
     } else if (!loads_are_on) {
@@ -198,7 +193,7 @@ StabilityVerdict conclude_static(const Model& model, const State& state, const C
     else if (found.moving < 0)
         text << "no equilibrium within " << found.iterations << " iterations: unbalanced ratio " << found.ratio;
     else
-        text << "there is no equilibrium: " << block_text(model, found.moving) << " keeps moving, unbalanced ratio "
+        text << "there is no equilibrium: " << title_and_place(model, found.moving) << " keeps moving, unbalanced ratio "
              << found.ratio;
     v.reason = text.str();
     return v;

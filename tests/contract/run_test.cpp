@@ -311,6 +311,6 @@ run: {solver: explicit, until: {time: 0.01}}
     REQUIRE(run.state().unsettled.size() == 1);
     CHECK(run.state().unsettled[0].stage == 0);
     CHECK(run.state().unsettled[0].ratio > 1e-6);
-    CHECK(out_of_time(run.simulation(), run.state().unsettled[0]).find("stage stand has no equilibrium: block 1 'block'") ==
+    CHECK(out_of_time(run.simulation(), run.state().unsettled[0]).find("stage stand has no equilibrium: block 1 `block`") ==
           0);
 }

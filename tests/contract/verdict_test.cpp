@@ -278,7 +278,7 @@ TEST_CASE("results keep the verdict with its reason and the mechanism of each bl
     const h5::File file = h5::File::open(folder / "run.h5");
     CHECK(file.text("/talus/verdict", "verdict") == "unstable");
     CHECK(file.text("/talus/verdict", "mechanism") == "fall");
-    CHECK(file.text("/talus/verdict", "reason").find("'block'") != std::string::npos);
+    CHECK(file.text("/talus/verdict", "reason").find("`block`") != std::string::npos);
     CHECK(file.numbers("/talus/verdict", "time").at(0) == simulation.verdict().time);
     CHECK(file.read<std::uint8_t>("/talus/verdict/block_mechanism") == std::vector<std::uint8_t>{0, 4});
 }

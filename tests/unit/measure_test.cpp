@@ -1,4 +1,5 @@
 #include "model/measure.hpp"
+#include "model/material_point.hpp"
 
 #include "model/build.hpp"
 #include "model/hash.hpp"
@@ -80,11 +81,12 @@ TEST_CASE("the unbalanced ratio is measured against contact forces when they are
 TEST_CASE("displacement follows a point of the block through translation and rotation") {
     Scene scene = pair_on_base();
     State& state = scene.state;
+    const MaterialPoint corner = fixed_to(state, 1, {2.0, 1.0}), middle = fixed_to(state, 1, {1.0, 0.5});
     state.motion.position[1] += Vec2(0.5, 0.25);
     state.motion.angle[1] = std::numbers::pi / 2;
     // The corner (2, 1) is (1, 0.5) from the centroid and goes to (-0.5, 1): moved by (-1.5, 0.5) besides the translation.
-    CHECK((displacement(scene.model, state, 1, {2.0, 1.0}) - Vec2(-1.0, 0.75)).norm() < 1e-15);
-    CHECK(displacement(scene.model, state, 1, {1.0, 0.5}) == Vec2(0.5, 0.25));
+    CHECK((corner.displacement(state) - Vec2(-1.0, 0.75)).norm() < 1e-15);
+    CHECK(middle.displacement(state) == Vec2(0.5, 0.25));
 }
 
 TEST_CASE("displacement counts from the last reset") {
@@ -94,9 +96,10 @@ TEST_CASE("displacement counts from the last reset") {
     state.motion.angle[1] = 0.3;
     state.start_position = state.motion.position;
     state.start_angle = state.motion.angle;
-    CHECK(displacement(scene.model, state, 1, {8.0, 3.0}) == Vec2(0.0, 0.0));
-    state.motion.angle[1] += 1e-9;  // tiny turns must not drown in the size of the arm
-    CHECK(displacement(scene.model, state, 1, {8.0, 3.0}).y() == Approx(1e-9).epsilon(1e-6));
+    const MaterialPoint point = fixed_to(state, 1, {8.0, 3.0});
+    CHECK(point.displacement(state) == Vec2(0.0, 0.0));
+    state.motion.angle[1] += 1e-9;
+    CHECK(point.displacement(state).y() == Approx(1e-9).epsilon(1e-6));
 }
 
 TEST_CASE("the fastest point of a spinning block is its farthest corner") {
