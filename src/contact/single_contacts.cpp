@@ -104,8 +104,9 @@ void SingleContacts::evaluate(int i) {
     Pressed pressed = press(c, shifted, apart);
     changed |= c.edge_a != edge_a || c.edge_b != edge_b;
     if (!pressed.loaded()) return part(i, s, apart);
-    // The force acts at the true place.
-    pressed.torque_b -= (s.dx - shifted.dx) * pressed.fy - (s.dy - shifted.dy) * pressed.fx;
+    // The force acts at the true place; bit for bit as in batches.
+    const Vec2 thicker = c.dilation * c.normal;
+    pressed.torque_b -= thicker.x() * pressed.fy - thicker.y() * pressed.fx;
     load(i, s, pressed);
 }
 

@@ -121,11 +121,11 @@ Velocity Touches::uneven_way(const Bodies& bodies, std::span<const Velocity> bef
             0.5 * dt * (late * (v1.spin - v0.spin) + g.spin)};
 }
 
-void Touches::add_earlier() {
+void Touches::add_earlier(double resolution) {
     pressed_.resize(2 * touches_.size());
     for (std::size_t i = 0; i < touches_.size(); ++i) {
         Touch& c = touches_[i];
-        for (int end = 0; end < 2; ++end) pressed_[2 * i + end] = c.p[end] > 0.0;
+        for (int end = 0; end < 2; ++end) pressed_[2 * i + end] = c.p[end] * (end == 0 ? c.k00 : c.k11) > resolution;
         for (int k = 0; k < 3; ++k) c.p[k] += c.earlier[k];
     }
 }

@@ -1,5 +1,6 @@
 #include "rigid/impulses.hpp"
 
+#include "rigid/coupled.hpp"
 #include "rigid/direct.hpp"
 
 #include <algorithm>
@@ -62,8 +63,22 @@ void two_ends(const Touch& c, double q0, double q1, double p[2]) {
     p[1] = one_end(c.k11, q1 + c.k01 * p[0]);
 }
 
+/// The same for a contact whose friction changes its normal velocity.
+bool solve_coupled(Touch& c, std::span<const Softness> bodies, std::span<Velocity> v, double& largest) {
+    const double old[3] = {c.p[0], c.p[1], c.p[2]}, none[3] = {-old[0], -old[1], -old[2]};
+    apply(c, none, bodies, v);
+    const Approach u = approach(c, v);
+    const double q[3] = {along_normal(c, u, 0) - c.least[0], c.ends == 2 ? along_normal(c, u, 1) - c.least[1] : 0.0,
+                         along_tangent(c, u) - c.sticks};
+    const bool found = solve_together(c, bodies, q);
+    apply(c, c.p, bodies, v);
+    largest = std::max({std::abs(c.p[0] - old[0]) * c.k00, std::abs(c.p[1] - old[1]) * c.k11, std::abs(c.p[2] - old[2]) * c.kt});
+    return found;
+}
+
 /// One contact by itself; returns the largest change of a relative velocity, m/s.
 double solve_one(Touch& c, std::span<const Softness> bodies, std::span<Velocity> v) {
+    if (double largest; c.coupled && solve_coupled(c, bodies, v, largest)) return largest;
     const double old[3] = {c.p[0], c.p[1], c.p[2]};
     const Approach u = approach(c, v);
     const double u0 = along_normal(c, u, 0);
@@ -128,6 +143,7 @@ void apply(const Touch& c, const double p[3], std::span<const Softness> bodies, 
 Solution ImpulseSolver::solve(std::span<Touch> touches, std::span<const Softness> bodies, std::span<Velocity> velocity,
                               Convergence until) {
     norm_ = 0.0;
+    for (Touch& c : touches) c.coupled = coupled(c, bodies);
     double left = std::numeric_limits<double>::infinity();  // where sweeps alone had come when they were helped
     for (int sweep = 1;; ++sweep) {
         keep(touches, velocity);
@@ -188,7 +204,7 @@ void ImpulseSolver::accelerate(std::span<Touch> touches, std::span<Velocity> vel
         const double d[3] = {c.p[0] - impulse_[3 * i], c.p[1] - impulse_[3 * i + 1], c.p[2] - impulse_[3 * i + 2]};
         norm += d[0] * d[0] * c.k00 + d[1] * d[1] * c.k11 + d[2] * d[2] * c.kt;
     }
-    const bool worse = norm > norm_;  // begin anew along the gradient
+    const bool worse = !(norm <= norm_) || impulse_direction_.size() != impulse_.size();  // begin anew along the gradient
     const double kept = worse || norm == 0.0 ? 0.0 : norm / norm_;
     norm_ = norm;
     if (worse) {

@@ -30,6 +30,7 @@ struct Touch {
     double friction;                      // 1, tangent
     double along = 1.0, against = 1.0;    // shares of friction that may act along perp(normal), and against it
     bool slips = false;                   // friction is not enough
+    bool coupled = false;                 // see coupled.hpp; known while impulses are sought
     double cohesion;                      // N s, what may act along perp(normal) without any pressure
     double p[3] = {0.0, 0.0, 0.0};        // N s
     double earlier[3] = {0.0, 0.0, 0.0};  // N s, what acted before an impact ended it, whatever the velocities after it

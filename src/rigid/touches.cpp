@@ -27,6 +27,9 @@ constexpr double touching = 1e-9, narrow = 1e-5, came_in = 1e-4;
 // one by one.
 constexpr double rocking_fall = 8.0 / 12.0;
 
+// Of the way of free fall: no end is looked at more closely.
+constexpr double least_near = 1e-3;
+
 Vec2 velocity_at(const Velocity& v, const Vec2& arm) { return Vec2(v.x, v.y) + v.spin * perp(arm); }
 
 /// m/s, of the fastest point of a block at `position` (m); `rebounds` as in Touches::fastest.
@@ -188,6 +191,16 @@ double Touches::share_of_fall(const Model& model, const State& state, const Bodi
     return share;
 }
 
+// m, how far either body falls along the normal at an end within the step: a wall beside what falls is not what it falls on,
+// and would stop it short of a gap that it never closes.
+double falls_towards(const Touch& c, const Bodies& bodies, std::span<const Velocity> before, int end, double dt) {
+    const auto gained = [&](int q, const double arm[3]) {
+        const Velocity &v = bodies.velocity[q], &v0 = before[q];
+        return std::abs(c.nx * (v.x - v0.x) + c.ny * (v.y - v0.y) + arm[end] * (v.spin - v0.spin));
+    };
+    return 0.5 * dt * std::max(gained(c.a, c.arm_a), gained(c.b, c.arm_b));
+}
+
 // What carried a body in the step before most likely carries it in this one: a slender block that rocks about one corner
 // brings the other down with a hundredth of the acceleration of free fall, and slowly. Seen as if nothing carried it, it
 // would land too early, and its impact would count as none.
@@ -204,6 +217,8 @@ void Touches::judge_ends(const Model& model, const State& state, const Bodies& b
             double& near = near_[2 * i + end];
             if (slow_[i] < 1.0)
                 near = std::clamp(0.5 * dt * std::abs(u - normal_velocity(c, before, end)), slow_[i] * fall, fall);
+            else if (c.p[end] == 0.0)
+                near = std::clamp(falls_towards(c, bodies, before, end, dt), least_near * fall, fall);
             if (gap + 0.5 * dt * u <= 0.0 || gap <= near) {
                 c.least[end] = -0.5 * dt * bend(manifold_[i], bodies, before, from_a_[i], c, end).x();
             } else {

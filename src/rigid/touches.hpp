@@ -56,8 +56,9 @@ public:
 
     void forget_hints() { hint_.clear(); }  // the contact list has been renewed
 
-    /// Adds to the impulses that were found those that acted before an impact.
-    void add_earlier();
+    /// Adds to the impulses that were found those that acted before an impact. `resolution`: m/s, what changes a velocity by
+    /// less presses nothing: of two walls that leave a block some room, rounding would have it lie on both.
+    void add_earlier(double resolution);
 
     /// J, with which ends that have a restitution came down faster than `speed` (m/s) later in this step than another impact
     /// of their body (by more than the share `together` of it). Their impulses are guesses: those that were seen coming

@@ -234,7 +234,7 @@ bool Simulation::half_step_rigid(double dt) {
         if (!rebounds || look == most_looks || !r.touches.outrun(model_, placed_, bodies)) break;
         bodies.velocity = r.kicked;
     }
-    r.touches.add_earlier();
+    r.touches.add_earlier(10.0 * rigid_resolution(dt));
     lap(Part::sum);
     return true;
 }
