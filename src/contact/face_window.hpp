@@ -145,8 +145,8 @@ struct FaceIntegral {
     const double sd = w.tx * f.dx + w.ty * f.dy, yd = w.nx * f.dx + w.ny * f.dy;
     p.torque_a = height * thrust - sum.moment;
     p.torque_b = (height - yd) * thrust - (sum.moment - sd * sum.force);
-    // The normal is that of the force. That of a bond, pressed here and pulled there, may have any direction and trembles where
-    // hardly any is left, and with every turn the joint would give up shear force: there it is that of the faces.
+    // The normal is that of the force. That of a bond, pressed here and pulled there, may have any direction and trembles
+    // where hardly any is left, and with every turn the joint would give up shear force: there it is that of the faces.
     const double along = p.fx * w.nx + p.fy * w.ny, size = std::sqrt(p.fx * p.fx + p.fy * p.fy);
     const bool resultant = (std::abs(along) > 0.9 * size) & (size > 0.0) & (bonded_length == 0.0);
     p.along_normal = resultant ? (along > 0.0 ? size : -size) : along;

@@ -140,7 +140,7 @@ double power_iteration(const Model& model, const std::vector<Spring>& springs) {
 double damped_limit(double omega, double beta) {
     if (omega <= 0.0) return std::numeric_limits<double>::infinity();
     const double xi = 0.5 * beta * omega;
-    return 2.0 / omega * (std::sqrt(1.0 + xi * xi) - xi);
+    return 2.0 / (omega * (std::hypot(1.0, xi) + xi));  // sqrt(1 + xi^2) - xi, which would be 0 for much damping
 }
 
 std::vector<Matrix3> boundary_stiffness(const Model& model, const Placed& placed, const std::vector<std::uint8_t>& removed) {

@@ -4,6 +4,7 @@
 #include "model/supports.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 namespace talus {
@@ -31,6 +32,24 @@ std::vector<BlockId> loose_blocks(const Model& model, const Neighbours& neighbou
     for (BlockId b = 0; b < model.blocks.size(); ++b)
         if (!touched[b] && !model.blocks.held(b)) loose.push_back(b);
     return loose;
+}
+
+// What is pressed is pressed by overlap x stiffness: a stage that changes the stiffness changes the force.
+void stiffness_of_stages(const Scenario& scenario, std::vector<std::string>& all) {
+    std::vector<JointSpec> now = scenario.joints;
+    for (const StageSpec& stage : scenario.stages)
+        for (const JointSpec& joint : stage.joints)
+            for (JointSpec& before : now) {
+                if (before.name != joint.name) continue;
+                const double ratio = joint.normal_stiffness / before.normal_stiffness;
+                if (stage.solver != "rigid" && std::isfinite(ratio) && ratio > 0.0 && ratio != 1.0)
+                    all.push_back(
+                        "stage " + stage.name + " multiplies the normal stiffness of joint `" + joint.name + "` by " +
+                        number(ratio) +
+                        ": forces that are the stiffness times an overlap go with it, and blocks move until they are in "
+                        "balance again; forces by initial stress and shear forces stay");
+                before = joint;
+            }
 }
 
 bool something_holds(const Model& model) {
@@ -64,6 +83,7 @@ std::vector<std::string> warnings(const Scenario& scenario, const Model& model, 
     if (prestress.tension_dropped > 0)
         all.push_back("initial stress pulls on " + std::to_string(prestress.tension_dropped) +
                       " face(s) whose joint has no tension: set to zero there");
+    stiffness_of_stages(scenario, all);
     const double length = model.rounding_length;
     if (const auto less = std::ranges::count_if(model.corners.cut, [&](double cut) { return cut < length; }); less > 0)
         all.push_back(std::to_string(less) +

@@ -47,8 +47,7 @@ public:
             Column v(n);
             for (int i = 0; i < n; ++i) {
                 v[i] = -q_[unknown[i]] - (way == 0 ? 0.0 : k_(unknown[i], 2) * p[2]);
-                for (int j = 0; j < n; ++j)
-                    k(i, j) = k_(unknown[i], unknown[j]) + share * c_.friction * k_(unknown[i], 2);
+                for (int j = 0; j < n; ++j) k(i, j) = k_(unknown[i], unknown[j]) + share * c_.friction * k_(unknown[i], 2);
             }
             const Column found = k.fullPivLu().solve(v);
             for (int i = 0; i < n; ++i) p[unknown[i]] = found[i];

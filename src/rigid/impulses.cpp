@@ -72,7 +72,8 @@ bool solve_coupled(Touch& c, std::span<const Softness> bodies, std::span<Velocit
                          along_tangent(c, u) - c.sticks};
     const bool found = solve_together(c, bodies, q);
     apply(c, c.p, bodies, v);
-    largest = std::max({std::abs(c.p[0] - old[0]) * c.k00, std::abs(c.p[1] - old[1]) * c.k11, std::abs(c.p[2] - old[2]) * c.kt});
+    largest =
+        std::max({std::abs(c.p[0] - old[0]) * c.k00, std::abs(c.p[1] - old[1]) * c.k11, std::abs(c.p[2] - old[2]) * c.kt});
     return found;
 }
 

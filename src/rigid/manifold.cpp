@@ -180,8 +180,8 @@ Manifold find_manifold(const PlacedPart& a, const PlacedPart& b, const Vec2& d, 
         return of_first ? along_face(a, of_a.edge, b, d, reach, narrow)
                         : seen_from_a(along_face(b, of_b.edge, a, -d, reach, narrow), d);
     };
-    // What hardly reaches over an inner edge is carried by the part on the other side of it; the outer faces of this one may lie on
-    // the far side of the block.
+    // What hardly reaches over an inner edge is carried by the part on the other side of it; the outer faces of this one may
+    // lie on the far side of the block.
     const double outer = std::max(of_a.distance, of_b.distance);
     if (outer < distance - tie && outer < -sunk * narrow) {
         m.distance = distance;

@@ -217,8 +217,10 @@ RecordSpec convert_record(const Cursor& at) {
     std::set<std::string> names;
     for (const Cursor& history : at["history"].items()) {
         record.history.push_back(convert_history(history));
-        if (!names.insert(record.history.back().name).second)
-            history["name"].fault("a history of this name is there already");
+        const std::string& name = record.history.back().name;
+        if (name.empty() || name == "." || name.find('/') != std::string::npos)
+            history["name"].fault("is the name of a group of the results, and must not be empty, a dot or contain a slash");
+        if (!names.insert(name).second) history["name"].fault("a history of this name is there already");
     }
     record.contacts = at["contacts"].yes();
     return record;

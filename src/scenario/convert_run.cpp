@@ -70,6 +70,8 @@ StageSpec convert_stage(const Cursor& at, const std::string& solver_of_run, Valu
     stage.time_step_where = at["time_step"].where();
     if (stage.release > 0.0 && stage.remove.empty())
         at["release"].fault("there is nothing to release: the stage deletes no blocks");
+    if (stage.until.time && stage.solver != "static" && stage.release > *stage.until.time)
+        at["release"].fault("is longer than the stage (until.time), at whose end all that is left would be let go at once");
     return stage;
 }
 

@@ -69,7 +69,10 @@ Value parse_yaml(const std::string& text, const std::string& file, std::vector<F
         if (documents.size() > 1)
             faults.push_back(
                 {{file, documents[1].Mark().line + 1}, {}, "a second document (---); one file holds one scenario"});
-        return documents.empty() ? Value{} : Parser(file, faults).convert(documents[0], {}, 1, 0);
+        if (!documents.empty()) return Parser(file, faults).convert(documents[0], {}, 1, 0);
+        Value nothing;
+        nothing.line = 1;
+        return nothing;
     } catch (const YAML::Exception& error) {
         faults.push_back({{file, error.mark.line + 1}, {}, "not valid YAML: " + error.msg});
     } catch (const InputError& error) {

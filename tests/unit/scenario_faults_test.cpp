@@ -269,3 +269,19 @@ TEST_CASE("rounded corners are refused where they cannot be: other solvers, bond
     check_fault(scene("0.01", ", cohesion: 1e4"), "f.yaml:4 joints.rough.cohesion", "no bonds");
     check_fault(scene("0.01", ", tension: 1e4"), "f.yaml:4 joints.rough.tension", "no bonds");
 }
+
+TEST_CASE("a file without anything in it is told by its name and line") {
+    check_fault("", "f.yaml:1", "has no value");
+    check_fault("# nothing yet\n", "f.yaml:1", "has no value");
+}
+
+TEST_CASE("a history cannot have the name of a path: results are not touched before that is known") {
+    for (const char* name : {"a/b", ".", ""})
+        check_fault(small_scenario + "record: {history: [{name: \"" + name + "\", quantity: energy}]}\n",
+                    "f.yaml:", "name of a group of the results");
+}
+
+TEST_CASE("forces of deleted blocks fade away within the stage") {
+    const std::string stage = "stages: [{name: dig, delete: [{at: [0.5, 0.5]}], release: 1, until: {time: 0.2}}]\n";
+    check_fault(small_scenario + stage, "f.yaml:", "longer than the stage");
+}
