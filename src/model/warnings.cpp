@@ -52,6 +52,14 @@ void stiffness_of_stages(const Scenario& scenario, std::vector<std::string>& all
             }
 }
 
+void velocities_of_held(const Scenario& scenario, std::vector<std::string>& all) {
+    for (const BlockSpec& block : scenario.blocks)
+        if ((block.held.x && block.velocity.x() != 0.0) || (block.held.y && block.velocity.y() != 0.0) ||
+            (block.held.rotation && block.spin != 0.0))
+            all.push_back("block `" + block.name +
+                          "` is held along an axis in which it has a velocity: it stays where it is");
+}
+
 bool something_holds(const Model& model) {
     const auto& inverse = model.blocks.inv_mass;
     return std::any_of(inverse.begin(), inverse.end(), [](const Vec2& m) { return m.x() == 0.0 || m.y() == 0.0; });
@@ -84,6 +92,7 @@ std::vector<std::string> warnings(const Scenario& scenario, const Model& model, 
         all.push_back("initial stress pulls on " + std::to_string(prestress.tension_dropped) +
                       " face(s) whose joint has no tension: set to zero there");
     stiffness_of_stages(scenario, all);
+    velocities_of_held(scenario, all);
     const double length = model.rounding_length;
     if (const auto less = std::ranges::count_if(model.corners.cut, [&](double cut) { return cut < length; }); less > 0)
         all.push_back(std::to_string(less) +

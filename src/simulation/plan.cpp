@@ -95,6 +95,7 @@ public:
         plan_.remedy = need_.remedy;
         check_softness();
         choose_solvers();
+        check_springs_left_out();
         check_resolution();
         choose_stiffness();
         check_give();
@@ -129,6 +130,17 @@ private:
         const bool hits = has_restitution(scene()) && burden_.speed > 0.0 && !calms();
         if (!need_.why.empty() && (rebounds(scene()) || hits) && !uses("rigid"))
             refuse("a restitution is for the rigid solver, but " + need_.why);
+    }
+
+    // Motion is that of blocks whose joints do not give. Where they give more than the error, a column may lean or buckle.
+    void check_springs_left_out() {
+        const bool rigid = std::ranges::all_of(stages_, [](const StageView& s) { return *s.solver == "rigid"; });
+        if (!rigid || !std::isfinite(softest_)) return;
+        const double closed = burden_.settlement(softest_);
+        if (closed > accuracy_)
+            plan_.warnings.push_back("joints of the stiffness given close by " + share(closed) +
+                                     " of a block, more than the accuracy, and the rigid solver takes them as closed: where "
+                                     "blocks could lean or buckle on them, solver: static or explicit tells");
     }
 
     /// Refuses every joint whose stiffness is left open.
