@@ -87,8 +87,8 @@ double mean_rate(const Signal& s, double first, double last) {
     return i == j ? not_measurable : (s.value[j] - s.value[i]) / (s.time[j] - s.time[i]);
 }
 
-// The mean of an oscillation that dies away is not its level at rest, and the crossings of any other level are uneven; its maxima
-// are even.
+// The mean of an oscillation that dies away is not its level at rest, and the crossings of any other level are uneven; its
+// maxima are even.
 double frequency(const Signal& s) {
     std::vector<std::size_t> starts = upward_crossings(s), tops;
     if (starts.empty()) return not_measurable;

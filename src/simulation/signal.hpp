@@ -20,9 +20,9 @@ double value_at(const Signal& signal, double time);
 /// (v2 - v1) / (t2 - t1) between the recorded samples nearest to the two times.
 double mean_rate(const Signal& signal, double first, double last);
 
-/// Hz, from the first to the last maximum, one after each upward crossing of the mean; needs two of them. A maximum is placed
-/// by the parabola through three samples, so the error falls with the square of the time step, and with damping it is that of
-/// the damped oscillation.
+/// Hz, from the first to the last maximum, one after each upward crossing of the mean; needs two of them. A maximum is
+/// placed by the parabola through three samples, so the error falls with the square of the time step, and with damping it is
+/// that of the damped oscillation.
 double frequency(const Signal& signal);
 
 /// Mean logarithmic decrement per cycle, from swings (maximum less the minimum after it, each from a parabola through three

@@ -57,9 +57,8 @@ TEST_CASE("a frequency is that of the damped oscillation, whatever the level and
     for (const double xi : {0.02, 0.11, 0.18, 0.3})
         for (const double phase : {0.0, 0.7, 2.0}) {
             const double damped = w * std::sqrt(1 - xi * xi);
-            const Signal s = sampled(1e-4, 6000, [&](double t) {
-                return -2.5 + std::exp(-xi * w * t) * std::cos(damped * t + phase);
-            });
+            const Signal s =
+                sampled(1e-4, 6000, [&](double t) { return -2.5 + std::exp(-xi * w * t) * std::cos(damped * t + phase); });
             CHECK(frequency(s) == Approx(damped / (2 * pi)).epsilon(1e-5));
         }
 }
